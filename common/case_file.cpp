@@ -1,0 +1,331 @@
+#include "common/case_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "common/error.hpp"
+
+namespace tailrun {
+
+using Json = nlohmann::ordered_json;
+
+bool Range::contains(double value) const {
+  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+}
+
+std::string Range::text() const {
+  const auto bound = [](double value) {
+    return std::isfinite(value) ? fmt::format("{:g}", value) : value < 0 ? "-inf" : "inf";
+  };
+  return fmt::format("{}{}, {}{}", low_open || !std::isfinite(low) ? '(' : '[', bound(low), bound(high),
+                     high_open || !std::isfinite(high) ? ')' : ']');
+}
+
+struct CaseFile::State {
+  std::filesystem::path path;
+  std::string text;
+  Json json;
+  std::map<std::string, std::set<std::string>> known;  // by pointer of the object
+  std::map<std::string, const Json*> visited;          // objects that somebody read
+  std::vector<std::string> echo;
+};
+
+namespace {
+
+std::string child(const std::string& pointer, const std::string& key) {
+  return pointer + "/" + key;
+}
+
+std::string kind(const Json& value) {
+  std::string shown = value.dump();
+  if (shown.size() > 60) shown = shown.substr(0, 57) + "...";
+  return fmt::format("{} {}", value.type_name(), shown);
+}
+
+}  // namespace
+
+CaseFile::CaseFile(const std::filesystem::path& path) : state_(std::make_shared<State>()) {
+  state_->path = path;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError(fmt::format("{}: no such case file, or it cannot be read", path.string()));
+  std::ostringstream text;
+  text << stream.rdbuf();
+  state_->text = text.str();
+  try {
+    state_->json = Json::parse(state_->text, nullptr, true, /*ignore_comments=*/true);
+  } catch (const nlohmann::json::parse_error& error) {
+    throw InputError(fmt::format("{}: not valid JSON: {}", path.string(), error.what()));
+  }
+  if (!state_->json.is_object())
+    throw InputError(
+        fmt::format("{}: the case file must be a JSON object, found {}", path.string(), kind(state_->json)));
+}
+
+CaseFile::~CaseFile() = default;
+CaseFile::CaseFile(CaseFile&&) noexcept = default;
+
+CaseNode CaseFile::root() const {
+  return CaseNode(state_, &state_->json, "");
+}
+const std::filesystem::path& CaseFile::path() const {
+  return state_->path;
+}
+const std::string& CaseFile::text() const {
+  return state_->text;
+}
+std::vector<std::string> CaseFile::echo() const {
+  return state_->echo;
+}
+
+void CaseFile::finish() const {
+  for (const auto& [pointer, object] : state_->visited) {
+    const auto& known = state_->known[pointer];
+    for (const auto& [key, value] : object->items()) {
+      if (known.contains(key)) continue;
+      std::vector<std::string> unused;
+      for (const auto& candidate : known)
+        if (!object->contains(candidate)) unused.push_back(candidate);
+      throw InputError(fmt::format("{}: {}: unknown key '{}'.{} Allowed here: {}", state_->path.string(),
+                                   child(pointer, key), key, did_you_mean(key, unused),
+                                   joined({known.begin(), known.end()})));
+    }
+  }
+}
+
+CaseNode::CaseNode(std::shared_ptr<CaseFile::State> state, const Json* json, std::string pointer)
+    : state_(std::move(state)), json_(json), pointer_(std::move(pointer)) {
+  if (json_ && json_->is_object()) state_->visited[pointer_] = json_;
+}
+
+void CaseNode::fail(const std::string& key, const std::string& message) const {
+  throw InputError(fmt::format("{}: {}: {}", state_->path.string(),
+                               key.empty() ? (pointer_.empty() ? "/" : pointer_) : child(pointer_, key), message));
+}
+
+const Json* CaseNode::find(const std::string& key) const {
+  state_->known[pointer_].insert(key);
+  if (!json_ || !json_->is_object()) return nullptr;
+  const auto it = json_->find(key);
+  return it == json_->end() ? nullptr : &*it;
+}
+
+const Json& CaseNode::require(const std::string& key, std::string_view wanted) const {
+  const Json* value = find(key);
+  if (value) return *value;
+  std::vector<std::string> strangers;
+  if (json_ && json_->is_object())
+    for (const auto& [name, unused] : json_->items())
+      if (!state_->known[pointer_].contains(name)) strangers.push_back(name);
+  const std::string near = nearest(key, strangers);
+  fail(key, fmt::format("missing; {} is required{}", wanted,
+                        near.empty() ? "" : fmt::format(" (found '{}' instead)", near)));
+}
+
+void CaseNode::record(const std::string& key, const std::string& value, std::string_view unit, bool is_default) const {
+  state_->echo.push_back(fmt::format("{} = {}{}{}", child(pointer_, key).substr(1), value,
+                                     unit.empty() || unit == "1" ? "" : fmt::format(" {}", unit),
+                                     is_default ? "  (default)" : ""));
+}
+
+double CaseNode::checked(const std::string& key, const Json& value, std::string_view unit, Range range) const {
+  if (!value.is_number())
+    fail(key, fmt::format("found {}, but a number [{}] in {} is required", kind(value), unit, range.text()));
+  const double number = value.get<double>();
+  if (!std::isfinite(number) || !range.contains(number))
+    fail(key, fmt::format("found {:g}, but allowed is {} [{}]", number, range.text(), unit));
+  return number;
+}
+
+double CaseNode::number(const std::string& key, std::string_view unit, Range range) const {
+  const double value = checked(key, require(key, fmt::format("a number [{}] in {}", unit, range.text())), unit, range);
+  record(key, fmt::format("{:g}", value), unit, false);
+  return value;
+}
+
+double CaseNode::number_or(const std::string& key, std::string_view unit, Range range, double fallback) const {
+  const Json* json = find(key);
+  const double value = json ? checked(key, *json, unit, range) : fallback;
+  record(key, fmt::format("{:g}", value), unit, !json);
+  return value;
+}
+
+std::optional<double> CaseNode::number_if(const std::string& key, std::string_view unit, Range range) const {
+  if (!find(key)) return std::nullopt;
+  return number(key, unit, range);
+}
+
+long CaseNode::integer(const std::string& key, long low, long high) const {
+  const Json& json = require(key, fmt::format("an integer in [{}, {}]", low, high));
+  if (!json.is_number_integer() || json.get<long>() < low || json.get<long>() > high)
+    fail(key, fmt::format("found {}, but an integer in [{}, {}] is required", kind(json), low, high));
+  record(key, std::to_string(json.get<long>()), "", false);
+  return json.get<long>();
+}
+
+long CaseNode::integer_or(const std::string& key, long low, long high, long fallback) const {
+  if (find(key)) return integer(key, low, high);
+  record(key, std::to_string(fallback), "", true);
+  return fallback;
+}
+
+bool CaseNode::boolean_or(const std::string& key, bool fallback) const {
+  const Json* json = find(key);
+  if (json && !json->is_boolean()) fail(key, fmt::format("found {}, but true or false is required", kind(*json)));
+  const bool value = json ? json->get<bool>() : fallback;
+  record(key, value ? "true" : "false", "", !json);
+  return value;
+}
+
+std::string CaseNode::text(const std::string& key) const {
+  const Json& json = require(key, "a text");
+  if (!json.is_string()) fail(key, fmt::format("found {}, but a text is required", kind(json)));
+  record(key, json.get<std::string>(), "", false);
+  return json.get<std::string>();
+}
+
+std::string CaseNode::text_or(const std::string& key, const std::string& fallback) const {
+  if (find(key)) return text(key);
+  record(key, fallback, "", true);
+  return fallback;
+}
+
+std::string CaseNode::choice(const std::string& key, const std::vector<std::string>& allowed) const {
+  const Json& json = require(key, "one of " + joined(allowed));
+  if (!json.is_string()) fail(key, fmt::format("found {}, but one of {} is required", kind(json), joined(allowed)));
+  const auto value = json.get<std::string>();
+  for (const auto& word : allowed) {
+    if (word != value) continue;
+    record(key, value, "", false);
+    return value;
+  }
+  fail(key,
+       fmt::format("found '{}', but allowed is one of {}.{}", value, joined(allowed), did_you_mean(value, allowed)));
+}
+
+std::string CaseNode::choice_or(const std::string& key, const std::vector<std::string>& allowed,
+                                const std::string& fallback) const {
+  if (find(key)) return choice(key, allowed);
+  record(key, fallback, "", true);
+  return fallback;
+}
+
+std::vector<double> CaseNode::numbers(const std::string& key, std::string_view unit, Range range,
+                                      std::size_t count) const {
+  const std::string wanted =
+      count ? fmt::format("a list of {} numbers [{}]", count, unit) : fmt::format("a list of numbers [{}]", unit);
+  const Json& json = require(key, wanted);
+  if (!json.is_array() || (count && json.size() != count))
+    fail(key, fmt::format("found {}, but {} is required", kind(json), wanted));
+  std::vector<double> values;
+  for (std::size_t i = 0; i < json.size(); ++i)
+    values.push_back(checked(child(key, std::to_string(i)), json[i], unit, range));
+  record(key, json.dump(), unit, false);
+  return values;
+}
+
+std::vector<double> CaseNode::numbers_or(const std::string& key, std::string_view unit, Range range,
+                                         const std::vector<double>& fallback, std::size_t count) const {
+  if (find(key)) return numbers(key, unit, range, count);
+  record(key, Json(fallback).dump(), unit, true);
+  return fallback;
+}
+
+std::vector<std::string> CaseNode::texts_or(const std::string& key, const std::vector<std::string>& fallback) const {
+  const Json* json = find(key);
+  if (!json) {
+    record(key, Json(fallback).dump(), "", true);
+    return fallback;
+  }
+  const auto wrong = [&](const Json& value) { return !value.is_string(); };
+  if (!json->is_array() || std::any_of(json->begin(), json->end(), wrong))
+    fail(key, fmt::format("found {}, but a list of texts is required", kind(*json)));
+  record(key, json->dump(), "", false);
+  return json->get<std::vector<std::string>>();
+}
+
+std::vector<double> CaseNode::table(const std::string& key, std::string_view unit, std::size_t columns) const {
+  const std::string wanted = fmt::format("a list of rows of {} numbers [{}]", columns, unit);
+  const Json& json = require(key, wanted);
+  if (!json.is_array()) fail(key, fmt::format("found {}, but {} is required", kind(json), wanted));
+  std::vector<double> values;
+  for (std::size_t row = 0; row < json.size(); ++row) {
+    const std::string place = child(key, std::to_string(row));
+    if (!json[row].is_array() || json[row].size() != columns)
+      fail(place, fmt::format("found {}, but {} numbers [{}] are required", kind(json[row]), columns, unit));
+    for (const auto& value : json[row]) values.push_back(checked(place, value, unit, Range::any()));
+  }
+  record(key, fmt::format("{} rows", json.size()), unit, false);
+  return values;
+}
+
+std::filesystem::path CaseNode::file(const std::string& key) const {
+  const std::filesystem::path given = text(key);
+  const std::filesystem::path path = given.is_absolute() ? given : state_->path.parent_path() / given;
+  if (!std::filesystem::exists(path))
+    fail(key, fmt::format("found '{}', but there is no file {} (paths are relative to the case file's folder)",
+                          given.string(), path.string()));
+  return path;
+}
+
+CaseNode CaseNode::object(const std::string& key) const {
+  const Json& json = require(key, "an object {...}");
+  if (!json.is_object()) fail(key, fmt::format("found {}, but an object {{...}} is required", kind(json)));
+  return CaseNode(state_, &json, child(pointer_, key));
+}
+
+std::optional<CaseNode> CaseNode::object_if(const std::string& key) const {
+  if (!find(key)) return std::nullopt;
+  return object(key);
+}
+
+CaseNode CaseNode::object_or_empty(const std::string& key) const {
+  return find(key) ? object(key) : CaseNode(state_, nullptr, child(pointer_, key));
+}
+
+std::vector<CaseNode> CaseNode::elements(const std::string& key, const Json& json) const {
+  if (!json.is_array()) fail(key, fmt::format("found {}, but a list of objects is required", kind(json)));
+  std::vector<CaseNode> nodes;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const std::string place = child(key, std::to_string(i));
+    if (!json[i].is_object()) fail(place, fmt::format("found {}, but an object {{...}} is required", kind(json[i])));
+    nodes.push_back(CaseNode(state_, &json[i], child(pointer_, place)));
+  }
+  return nodes;
+}
+
+std::vector<CaseNode> CaseNode::list(const std::string& key) const {
+  return elements(key, require(key, "a list of objects"));
+}
+
+std::vector<CaseNode> CaseNode::list_or_empty(const std::string& key) const {
+  const Json* json = find(key);
+  return json ? elements(key, *json) : std::vector<CaseNode>{};
+}
+
+std::vector<std::pair<std::string, CaseNode>> CaseNode::members() const {
+  std::vector<std::pair<std::string, CaseNode>> nodes;
+  if (!json_) return nodes;
+  for (const auto& [name, value] : json_->items()) nodes.emplace_back(name, object(name));
+  return nodes;
+}
+
+bool CaseNode::has(const std::string& key) const {
+  return find(key) != nullptr;
+}
+
+bool CaseNode::is_number(const std::string& key) const {
+  const Json* json = find(key);
+  return json && json->is_number();
+}
+
+bool CaseNode::is_list(const std::string& key) const {
+  const Json* json = find(key);
+  return json && json->is_array();
+}
+
+}  // namespace tailrun
