@@ -49,6 +49,7 @@ struct ParticleSet {
   std::vector<double> displacement;                       // m, (n, 3), since the start of the motion
   std::map<std::string, std::vector<double>> extra;       // further scalars by name, written as "1" unless in units
   std::map<std::string, std::string> extra_unit;
+  std::map<std::string, std::string> notes;  // texts by name, e.g. the hand-over audit as JSON
 
   std::size_t count() const { return mass.size(); }
   int components() const { return dimension == 2 ? 4 : 6; }

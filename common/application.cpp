@@ -1,0 +1,80 @@
+#include "common/application.hpp"
+
+#include <fmt/format.h>
+#include <omp.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "common/error.hpp"
+#include "common/provenance.hpp"
+
+namespace tailrun {
+namespace {
+
+bool is_quiet = false;
+
+}  // namespace
+
+bool quiet() {
+  return is_quiet;
+}
+
+void add_common_options(CLI::App& app) {
+  auto logger = spdlog::stderr_logger_st("tailrun");
+  logger->set_pattern("%v");
+  spdlog::set_default_logger(logger);
+  app.set_version_flag("--version", app.get_name() + " " + version());
+  app.add_flag_callback(
+      "--quiet,-q",
+      [] {
+        is_quiet = true;
+        spdlog::set_level(spdlog::level::warn);
+      },
+      "No progress and no messages other than warnings and errors");
+  app.add_option_function<int>(
+         "--threads", [](int count) { omp_set_num_threads(count); },
+         "OpenMP threads (default: OMP_NUM_THREADS, else all cores); the results do not depend on it")
+      ->check(CLI::Range(1, 1024));
+  app.fallthrough();
+}
+
+int run_application(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return exit_done;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? exit_done : exit_bad_input;
+  } catch (const InputError& error) {
+    spdlog::error("{}: {}", app.get_name(), error.what());
+    return exit_bad_input;
+  } catch (const ComputationError& error) {
+    spdlog::error("{}: the computation failed: {}", app.get_name(), error.what());
+    return exit_computation_failed;
+  } catch (const std::exception& error) {
+    spdlog::error("{}: unexpected error: {}", app.get_name(), error.what());
+    return exit_computation_failed;
+  }
+}
+
+void echo_options(const std::string& title, const std::vector<std::string>& lines) {
+  spdlog::info("{}:", title);
+  for (const auto& line : lines) spdlog::info("  {}", line);
+}
+
+void write_text_file(const std::string& path, const std::string& text) {
+  const std::string temporary = path + ".part";
+  const auto folder = std::filesystem::path(path).parent_path();
+  if (!folder.empty()) std::filesystem::create_directories(folder);
+  {
+    std::ofstream stream(temporary, std::ios::binary);
+    stream << text;
+    if (!stream.flush()) throw ComputationError(fmt::format("{}: cannot be written", temporary));
+  }
+  std::filesystem::rename(temporary, path);
+}
+
+}  // namespace tailrun

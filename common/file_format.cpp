@@ -1,0 +1,41 @@
+#include "common/file_format.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/error.hpp"
+
+namespace tailrun {
+
+void write_format(Hdf5Writer& file, const std::string& format, int format_version) {
+  file.group("/tailrun");
+  file.attribute("/tailrun", "format", format);
+  file.attribute("/tailrun", "format_version", static_cast<double>(format_version));
+}
+
+void check_format(const Hdf5Reader& file, const std::string& format, int format_version) {
+  if (!file.has("/tailrun") || !file.has_attribute("/tailrun", "format"))
+    throw InputError(fmt::format("{}: not a tailrun file: it has no group /tailrun with the attribute 'format'",
+                                 file.path().string()));
+  const std::string found = file.text_attribute("/tailrun", "format");
+  if (found != format)
+    throw InputError(
+        fmt::format("{}: is a '{}' file, but a '{}' file is required here", file.path().string(), found, format));
+  const int found_version = static_cast<int>(file.number_attribute("/tailrun", "format_version"));
+  if (found_version != format_version)
+    throw InputError(
+        fmt::format("{}: format version {}, but this program reads version {}. Make the file again with this version.",
+                    file.path().string(), found_version, format_version));
+}
+
+void check_values(const Hdf5Reader& file, const std::string& name, const std::vector<double>& values, bool positive) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i]))
+      file.fail(name, fmt::format("entry {} is {}, but every value must be finite", i, values[i]));
+    if (positive && values[i] <= 0.0)
+      file.fail(name, fmt::format("entry {} is {:g}, but every value must be positive", i, values[i]));
+  }
+}
+
+}  // namespace tailrun

@@ -1,0 +1,161 @@
+#include "common/particles.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+
+#include "common/file_format.hpp"
+#include "common/vtkhdf.hpp"
+
+namespace tailrun {
+namespace {
+
+constexpr const char* format_name = "tailrun-particles";
+const std::string data = "/VTKHDF/PointData/";
+
+// One row per field: the one place that knows its name, shape, unit and meaning, for writer and reader alike.
+// `columns` 0 is a scalar, -1 stands for the number of stress components.
+struct Field {
+  std::vector<double> ParticleSet::*values;
+  std::string name;
+  int columns;
+  std::string unit;
+  std::string description;
+  bool positive = false;
+  bool optional = false;
+};
+
+const std::vector<Field>& fields() {
+  static const std::vector<Field> table = {
+      {&ParticleSet::velocity, "velocity", 3, "m/s", "velocity relative to the base"},
+      {&ParticleSet::mass, "mass", 0, "kg", "mass (plane strain: per metre of thickness)", true},
+      {&ParticleSet::volume, "volume", 0, "m3", "current volume (plane strain: per metre of thickness)", true},
+      {&ParticleSet::effective_stress, "effective_stress", -1, "Pa",
+       "effective stress xx, yy, zz, xy[, yz, zx], tension positive"},
+      {&ParticleSet::pore_pressure, "pore_pressure", 0, "Pa", "pore pressure, compression positive"},
+      {&ParticleSet::initial_vertical_effective_stress, "initial_vertical_effective_stress", 0, "Pa",
+       "sigma'_v0 before shaking, compression positive", false, true},
+      {&ParticleSet::depth, "depth", 0, "m", "depth below the initial ground surface", false, true},
+      {&ParticleSet::excess_pore_pressure_ratio, "excess_pore_pressure_ratio", 0, "1", "r_u at the transfer", false,
+       true},
+      {&ParticleSet::residual_strength, "residual_strength", 0, "Pa", "s_R where assigned, 0 elsewhere", false, true},
+      {&ParticleSet::plastic_deviatoric_strain, "plastic_deviatoric_strain", 0, "1",
+       "accumulated plastic deviatoric strain", false, true},
+      {&ParticleSet::displacement, "displacement", 3, "m", "displacement since the start of the motion", false, true},
+  };
+  return table;
+}
+
+std::size_t file_columns(const Field& field, const ParticleSet& particles) {
+  return field.columns < 0 ? static_cast<std::size_t>(particles.components()) : static_cast<std::size_t>(field.columns);
+}
+
+void check_lengths(const ParticleSet& particles) {
+  const std::size_t n = particles.count();
+  const auto require = [](bool holds, const std::string& name) {
+    if (!holds) throw std::logic_error("write_particles: wrong length of " + name);
+  };
+  require(particles.position.size() == 3 * n, "position");
+  require(particles.material_id.size() == n, "material_id");
+  require(particles.region_id.empty() || particles.region_id.size() == n, "region_id");
+  require(particles.source_element.empty() || particles.source_element.size() == n, "source_element");
+  for (const auto& field : fields()) {
+    const std::size_t size = (particles.*field.values).size();
+    const std::size_t columns = std::max<std::size_t>(file_columns(field, particles), 1);
+    require(size == n * columns || (field.optional && size == 0), field.name);
+  }
+  for (const auto& [name, values] : particles.extra) require(values.size() == n, name);
+}
+
+}  // namespace
+
+void write_particles(const std::filesystem::path& path, const ParticleSet& particles, const Provenance& provenance) {
+  check_lengths(particles);
+  Hdf5Writer file(path);
+  std::vector<std::int64_t> vertices(particles.count());
+  std::iota(vertices.begin(), vertices.end(), 0);
+  write_unstructured_grid(file, particles.position, vertices, 1, vtk_vertex);
+  for (const auto& field : fields()) {
+    const auto& values = particles.*field.values;
+    if (values.empty() && field.optional) continue;
+    file.write(data + field.name, std::span<const double>(values), file_columns(field, particles), field.unit,
+               field.description);
+  }
+  file.write(data + "material_id", std::span<const std::int32_t>(particles.material_id), 0, "1",
+             "index into /tailrun/material_names");
+  if (!particles.region_id.empty())
+    file.write(data + "region_id", std::span<const std::int32_t>(particles.region_id), 0, "1",
+               "index into /tailrun/region_names");
+  if (!particles.source_element.empty())
+    file.write(data + "source_element", std::span<const std::int64_t>(particles.source_element), 0, "1",
+               "element of the snapshot, -1 when none");
+  for (const auto& [name, values] : particles.extra) {
+    const auto unit = particles.extra_unit.find(name);
+    file.write(data + name, std::span<const double>(values), 0, unit == particles.extra_unit.end() ? "1" : unit->second,
+               "further field of the program that wrote this file");
+  }
+
+  write_format(file, format_name, particles_format_version);
+  file.attribute("/tailrun", "dimension", static_cast<double>(particles.dimension));
+  file.attribute("/tailrun", "time_s", particles.time);
+  file.attribute("/tailrun", "transfer_time_s", particles.transfer_time);
+  file.attribute("/tailrun", "particle_size_m", particles.particle_size);
+  file.write_texts("/tailrun/material_names", particles.material_names, "names of the materials");
+  file.write_texts("/tailrun/region_names", particles.region_names, "names of the FEM regions");
+  file.group("/tailrun/terrain");
+  for (const auto& line : particles.terrain)
+    file.write("/tailrun/terrain/" + line.name, std::span<const double>(line.points), 2, "m",
+               "polyline x, y; material may be on its left-hand side");
+  file.group("/tailrun/notes");
+  for (const auto& [name, text] : particles.notes)
+    file.write_texts("/tailrun/notes/" + name, {text}, "text of the program that wrote this file");
+  write_provenance(file, provenance);
+  file.commit();
+}
+
+ParticleSet read_particles(const std::filesystem::path& path) {
+  const Hdf5Reader file(path);
+  check_format(file, format_name, particles_format_version);
+  ParticleSet particles;
+  particles.dimension = static_cast<int>(file.number_attribute("/tailrun", "dimension"));
+  if (particles.dimension != 2 && particles.dimension != 3)
+    file.fail("/tailrun", "attribute 'dimension' must be 2 or 3");
+  particles.time = file.number_attribute("/tailrun", "time_s");
+  particles.transfer_time = file.number_attribute("/tailrun", "transfer_time_s");
+  particles.particle_size = file.number_attribute("/tailrun", "particle_size_m");
+  particles.material_names = file.texts("/tailrun/material_names");
+  particles.region_names = file.texts("/tailrun/region_names");
+  particles.position = file.doubles("/VTKHDF/Points", 0, 3);
+  check_values(file, "/VTKHDF/Points", particles.position);
+  const std::size_t n = particles.position.size() / 3;
+
+  std::vector<std::string> known = {"material_id", "region_id", "source_element"};
+  for (const auto& field : fields()) {
+    known.push_back(field.name);
+    const std::string name = data + field.name;
+    if (field.optional && !file.has(name)) continue;
+    particles.*field.values = file.doubles(name, n, std::max<std::size_t>(file_columns(field, particles), 1));
+    check_values(file, name, particles.*field.values, field.positive);
+  }
+  const auto materials = file.integers(data + "material_id", n, 1);
+  check_indices(file, data + "material_id", materials, 0, static_cast<std::int64_t>(particles.material_names.size()));
+  particles.material_id.assign(materials.begin(), materials.end());
+  if (file.has(data + "region_id")) {
+    const auto regions = file.integers(data + "region_id", n, 1);
+    check_indices(file, data + "region_id", regions, -1, static_cast<std::int64_t>(particles.region_names.size()));
+    particles.region_id.assign(regions.begin(), regions.end());
+  }
+  if (file.has(data + "source_element")) particles.source_element = file.integers(data + "source_element", n, 1);
+  for (const auto& name : file.members("/VTKHDF/PointData")) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    particles.extra[name] = file.doubles(data + name, n, 1);
+    if (file.has_attribute(data + name, "unit")) particles.extra_unit[name] = file.text_attribute(data + name, "unit");
+  }
+  for (const auto& name : file.members("/tailrun/terrain"))
+    particles.terrain.push_back({name, file.doubles("/tailrun/terrain/" + name, 0, 2)});
+  for (const auto& name : file.members("/tailrun/notes"))
+    particles.notes[name] = file.texts("/tailrun/notes/" + name).at(0);
+  return particles;
+}
+
+}  // namespace tailrun

@@ -1,0 +1,22 @@
+// The VTKHDF v1 skeleton (static UnstructuredGrid) that both of our file formats are built on, so that ParaView 5.11
+// opens them as they are. https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html, "VTKHDF".
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "common/hdf5_file.hpp"
+
+namespace tailrun {
+
+constexpr std::uint8_t vtk_vertex = 1;
+constexpr std::uint8_t vtk_quad = 9;
+
+// Writes the group /VTKHDF with points (m, (n, 3)) and cells of one type, `nodes_per_cell` each; `connectivity` is
+// (cells, nodes_per_cell). PointData and CellData groups are made; fields go there by Hdf5Writer::write.
+void write_unstructured_grid(Hdf5Writer& file, std::span<const double> points,
+                             std::span<const std::int64_t> connectivity, std::size_t nodes_per_cell,
+                             std::uint8_t cell_type);
+
+}  // namespace tailrun
