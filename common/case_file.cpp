@@ -314,6 +314,13 @@ std::vector<std::pair<std::string, CaseNode>> CaseNode::members() const {
   return nodes;
 }
 
+std::vector<std::string> CaseNode::keys() const {
+  std::vector<std::string> names;
+  if (json_)
+    for (const auto& [name, value] : json_->items()) names.push_back(name);
+  return names;
+}
+
 bool CaseNode::has(const std::string& key) const {
   return find(key) != nullptr;
 }

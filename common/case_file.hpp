@@ -93,6 +93,7 @@ class CaseNode {
   // The members of an object with free names (materials, regions ...), in the order of the file.
   std::vector<std::pair<std::string, CaseNode>> members() const;
 
+  std::vector<std::string> keys() const;         // the keys that are there, in the order of the file
   bool has(const std::string& key) const;        // makes the key known
   bool is_number(const std::string& key) const;  // present and a number (for keys that take a number or a word)
   bool is_list(const std::string& key) const;

@@ -76,7 +76,8 @@ std::vector<double> without_third(const std::vector<double>& space) {
 
 }  // namespace
 
-void write_snapshot(const std::filesystem::path& path, const Snapshot& snapshot, const Provenance& provenance) {
+void write_snapshot(const std::filesystem::path& path, const Snapshot& snapshot, const Provenance& provenance,
+                    const std::function<void(Hdf5Writer&)>& also) {
   for (const auto& field : fields()) {
     const std::size_t rows = field.of_nodes ? snapshot.nodes() : snapshot.elements();
     const std::size_t columns = field.columns == 3 ? 2 : field.columns == 0 ? 1 : field.columns;
@@ -112,6 +113,7 @@ void write_snapshot(const std::filesystem::path& path, const Snapshot& snapshot,
     file.write("/tailrun/lines/" + line.name, std::span<const std::int64_t>(line.edges), 2, "1",
                "edges of this named line: pairs of node numbers");
   write_provenance(file, provenance);
+  if (also) also(file);
   file.commit();
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -60,8 +61,10 @@ struct Snapshot {
   std::size_t elements() const { return region_id.size(); }
 };
 
-// Throws ComputationError when it cannot be written, std::logic_error when array lengths disagree.
-void write_snapshot(const std::filesystem::path& path, const Snapshot& snapshot, const Provenance& provenance);
+// Throws ComputationError when it cannot be written, std::logic_error when array lengths disagree. `also` may add groups
+// of the writing program's own (its restart state) before the file takes its final name.
+void write_snapshot(const std::filesystem::path& path, const Snapshot& snapshot, const Provenance& provenance,
+                    const std::function<void(Hdf5Writer&)>& also = {});
 
 // Throws InputError: missing or truncated file, other format or version, a dataset missing or of the wrong shape,
 // values that are not finite, node numbers out of range.
