@@ -1,0 +1,143 @@
+// transfer_tool: hands the state of the finite elements over to the particles.
+//
+//   sample   points in every kept element; mass = density x weight x |J0|, volume = weight x |J|
+//   map      nodal fields by shape functions, stresses by element (or recovered inside a region)
+//   assign   ordered rules give each point its material and its residual strength
+//   audit    mass, volume, centre of mass and momentum of the particles are the mesh's own
+//   write    the particles file
+//
+// Sample runs:
+//   transfer_tool run transfer.json --snapshot snapshot_t16.000.h5 -o particles.h5
+//   transfer_tool info particles.h5
+//   transfer_tool import import.json -o snapshot.h5
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "common/application.hpp"
+#include "common/error.hpp"
+#include "transfer_tool/audit/audit.hpp"
+#include "transfer_tool/audit/particle_set.hpp"
+#include "transfer_tool/import/import_tables.hpp"
+#include "transfer_tool/inspect/file_report.hpp"
+#include "transfer_tool/options/transfer_case.hpp"
+
+namespace {
+
+using namespace tailrun;
+using namespace tailrun::transfer;
+
+struct RunOptions {
+  std::string case_path, snapshot_path, geostatic_path, output_path, size;
+};
+
+Snapshot read_state(const RunOptions& options, Provenance& provenance) {
+  Snapshot snapshot = read_snapshot(options.snapshot_path);
+  provenance.add_file(options.snapshot_path);
+  if (!options.geostatic_path.empty()) {
+    take_initial_state(snapshot, read_snapshot(options.geostatic_path));
+    provenance.add_file(options.geostatic_path);
+  }
+  return snapshot;
+}
+
+void warn_about(const Snapshot& snapshot, const TransferCase& wanted, const std::vector<bool>& kept,
+                const SamplePoints& points) {
+  if (wanted.transfer_time && std::abs(*wanted.transfer_time - snapshot.time) > 1e-3)
+    spdlog::warn("the case wants the state at {:g} s, the snapshot is of {:g} s", *wanted.transfer_time, snapshot.time);
+  if (points.capped_elements > 0)
+    spdlog::warn(
+        "{} elements want more than 5 Gauss points along a side for cells of {:g} m: take \"layout\": \"uniform\"",
+        points.capped_elements, wanted.sampling.cell_size);
+  for (std::size_t e = 0; e < snapshot.elements(); ++e)
+    if (kept[e] && snapshot.thickness[e] != 1.0) {
+      spdlog::warn("region '{}' has a thickness of {:g} m; its particles are per metre of thickness all the same",
+                   snapshot.region_names[static_cast<std::size_t>(snapshot.region_id[e])], snapshot.thickness[e]);
+      break;
+    }
+}
+
+void run(const RunOptions& options) {
+  Provenance provenance{"transfer_tool", {}, {}};
+  const CaseFile file(options.case_path);
+  provenance.add_text(file.path(), file.text());
+  const Snapshot snapshot = read_state(options, provenance);
+  const TransferCase wanted = read_transfer_case(file, snapshot.region_names, options.size);
+  echo_options("transfer_tool run " + options.case_path, file.echo());
+
+  // 1. Sample
+  const std::vector<bool> kept = kept_elements(snapshot, wanted.sampling);
+  const SamplePoints points = sample(snapshot, kept, wanted.sampling);
+  warn_about(snapshot, wanted, kept, points);
+
+  // 2. Map
+  const PointState state = map_state(snapshot, points, wanted.state);
+
+  // 3. Assign
+  const Assignment assignment = assign(snapshot, points, state, wanted.rules);
+  for (const auto& warning : assignment.warnings) spdlog::warn("{}", warning);
+  ParticleSet particles = particle_set(snapshot, points, state, assignment);
+  if (wanted.terrain.any()) particles.terrain = terrain_lines(snapshot, kept, wanted.terrain);
+
+  // 4. Audit
+  const Audit result = audit(
+      snapshot, kept, wanted.state.remove_base_motion ? snapshot.base_velocity : std::array<double, 2>{}, particles);
+  require_conserved(result);
+  fmt::print("{} particles at t = {:g} s, {:.3g} m apart on average\n\n{}", particles.count(), particles.time,
+             particles.particle_size, audit_table(result));
+
+  // 5. Write
+  particles.notes["audit"] = audit_json(result).dump(1);
+  particles.notes["assignment"] = assignment.record.dump(1);
+  write_particles(options.output_path, particles, provenance);
+  spdlog::info("wrote {}", options.output_path);
+}
+
+void import(const std::string& case_path, const std::string& output_path) {
+  Provenance provenance{"transfer_tool", {}, {}};
+  const CaseFile file(case_path);
+  const Snapshot snapshot = import_tables(file, provenance);
+  echo_options("transfer_tool import " + case_path, file.echo());
+  write_snapshot(output_path, snapshot, provenance);
+  fmt::print("{} nodes, {} elements, {} regions at t = {:g} s: {}\n", snapshot.nodes(), snapshot.elements(),
+             snapshot.region_names.size(), snapshot.time, output_path);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Hands the finite elements' state over to the particles", "transfer_tool"};
+  tailrun::add_common_options(app);
+  app.require_subcommand(1);
+
+  RunOptions options;
+  auto* run_command = app.add_subcommand("run", "Snapshot to particles");
+  run_command->add_option("case", options.case_path, "transfer.json")->required();
+  run_command->add_option("--snapshot", options.snapshot_path, "Snapshot of fem_stage or of `import`")->required();
+  run_command->add_option(
+      "--geostatic", options.geostatic_path,
+      "Snapshot of the state before shaking, for sigma'_v0 and r_u (default: the snapshot's own record)");
+  run_command->add_option("-o,--output", options.output_path, "Particles file to write")->required();
+  run_command->add_option("--size", options.size, "Entry of the case's \"sizes\", e.g. coarse");
+  run_command->callback([&] { run(options); });
+
+  std::string info_path;
+  bool as_json = false;
+  auto* info_command = app.add_subcommand("info", "What is in a file of the chain");
+  info_command->add_option("file", info_path, "Snapshot, particles, frame, geostatic or checkpoint file")->required();
+  info_command->add_flag("--json", as_json, "For machines");
+  info_command->callback([&] {
+    const FileReport report = read_file_report(info_path);
+    fmt::print("{}", as_json ? report_json(report).dump(1) + "\n" : report_text(report));
+  });
+
+  std::string import_path, snapshot_path;
+  auto* import_command = app.add_subcommand("import", "Another code's state, as CSV tables, to a snapshot");
+  import_command->add_option("case", import_path, "import.json")->required();
+  import_command->add_option("-o,--output", snapshot_path, "Snapshot to write")->required();
+  import_command->callback([&] { import(import_path, snapshot_path); });
+
+  return tailrun::run_application(app, argc, argv);
+}
