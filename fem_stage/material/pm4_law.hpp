@@ -1,0 +1,98 @@
+// Constants and functions that PM4Sand and PM4Silt share: everything that follows from the parameters alone, worked out
+// once per material so that the rate equations do no avoidable arithmetic.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "fem_stage/material/pm4_state.hpp"
+
+namespace tailrun::fem {
+
+constexpr double sqrt_half = 0.70710678118654752440;
+constexpr double sqrt_two = 1.41421356237309504880;
+
+// How the model is realised. `opensees`: OpenSees' choices one by one (pieces of at most 1e-5 strain, memory and fabric
+// records frozen over a global step, its reset at the stress floor). `improved`: rate equations integrated by error
+// alone, memory and records followed within the step, direction-preserving reset.
+enum class Pm4Compatibility { improved, opensees };
+
+struct Pm4Surfaces {
+  double xi = 0.0;   // relative state parameter: xi_R (sand), xi_s = xi/lambda (silt)
+  double M_b = 0.0;  // bounding ratio q/p
+  double M_d = 0.0;  // dilatancy ratio q/p
+};
+
+struct Pm4Moduli {
+  double G = 0.0;
+  double K = 0.0;
+  double M_cur = 0.0;  // q/max(p, p_min)
+};
+
+// Resolved constants of one material. SI units.
+struct Pm4Law {
+  double density = 0.0;
+  double atmospheric_pressure = 101.3e3;
+  double G0_pA = 0.0;  // shear modulus of the elastic stage
+  double poisson = 0.3;
+  double bulk_over_shear = 0.0;  // K/G = 2/3 (1+nu)/(1-2nu)
+  double M = 0.0;                // critical-state q/p = 2 sin phi_cv
+  double m = 0.01;
+  double h0 = 0.0;
+  double h_po = 0.0;
+  double C_gamma1 = 0.0;
+  double C_Kaf = 0.0;
+  double c_z = 0.0;
+  double C_GD = 0.0;
+  double C_DR = 0.0;
+  double index0 = 0.0;       // D_R (sand) or e (silt) at zero volumetric strain
+  double index_slope = 0.0;  // its change per unit volumetric strain
+  double tolerance = 0.0;    // of the yield function, Pa
+  Pm4Compatibility compatibility = Pm4Compatibility::improved;
+  bool post_shaking = false;
+};
+
+inline double bulk_over_shear_of(double poisson) {
+  const double nu = poisson >= 0.5 ? 0.4999 : poisson;
+  return 2.0 / 3.0 * (1.0 + nu) / (1.0 - 2.0 * nu);
+}
+
+inline double macaulay(double x) {
+  return x > 0.0 ? x : 0.0;
+}
+inline double square(double x) {
+  return x * x;
+}
+inline double cube(double x) {
+  return x * x * x;
+}
+
+// Unit normal of the yield cone at (p, s): (s - p alpha)/|s - p alpha|; the shear direction at the very axis.
+inline Deviator cone_normal(double p, Deviator s, Deviator alpha) {
+  const Deviator radius = s - p * alpha;
+  const double length = norm(radius);
+  if (!(length > 1e-14 * (1.0 + std::fabs(p)))) return {0.0, sqrt_half};
+  return (1.0 / length) * radius;
+}
+
+// f = |s - p alpha| - sqrt(1/2) m p
+inline double yield_function(double m, double p, Deviator s, Deviator alpha) {
+  return norm(s - p * alpha) - sqrt_half * m * p;
+}
+
+// Elastic moduli of a state (pm4 manuals: stress, stress ratio and fabric dependence).
+template <class Law>
+inline Pm4Moduli moduli_of(const Law& law, const Pm4PointConstants& point, const Pm4Surfaces& surfaces, double p,
+                           Deviator s, double z_cum) {
+  const double p_star = std::max(p, point.p_min);
+  Pm4Moduli moduli;
+  moduli.M_cur = sqrt_two * norm(s) / p_star;
+  const double ratio = std::min(1.0, square(square(moduli.M_cur / surfaces.M_b)));
+  const double fabric = z_cum / point.z_max;
+  moduli.G = law.modulus_at(p_star) * (1.0 - 0.5 * ratio) * (1.0 + fabric) / (1.0 + law.C_GD * fabric);
+  if (law.post_shaking) moduli.G *= law.post_shaking_factor(point, surfaces, moduli, p_star, z_cum);
+  moduli.K = law.bulk_over_shear * moduli.G;
+  return moduli;
+}
+
+}  // namespace tailrun::fem
