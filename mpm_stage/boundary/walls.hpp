@@ -1,0 +1,34 @@
+// The sides of the grid: planes of nodes at which velocities are held.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace tailrun::mpm {
+
+enum class WallKind { open, fixed, slip, frictional };
+
+// What happens to particles beyond an open side of the domain.
+enum class LeavingParticles { error, remove };
+
+template <int Dim>
+struct Walls {
+  struct Side {
+    WallKind kind = WallKind::open;
+    double friction = 0.0;  // 1, frictional only
+  };
+  bool bounded = false;                   // without a domain the grid is endless and has no walls
+  std::array<double, Dim> low{}, high{};  // m, on nodes
+  std::array<std::array<Side, 2>, Dim> side{};
+  LeavingParticles leaving = LeavingParticles::error;
+
+  bool any_wall() const {
+    for (const auto& pair : side)
+      for (const auto& s : pair)
+        if (s.kind != WallKind::open) return true;
+    return false;
+  }
+};
+
+}  // namespace tailrun::mpm

@@ -1,0 +1,92 @@
+// Closed-form return to the Mohr-Coulomb pyramid and to the Tresca prism in principal stresses s1 >= s2 >= s3 (tension
+// positive), without branches so that loops over particles become vector code.
+//
+// Clausen, Damkilde & Andersen (2006, 2007): plane k s1 - s3 = s_c with k = (1 + sin phi) / (1 - sin phi), s_c = 2 c
+// sqrt(k); potential m s1 - s3, m from psi; edges s = s_a + t (1, k, k) (s2 = s3) and s_a + t (1, 1, k) (s1 = s2), apex
+// s_a = s_c / (k - 1). Plastic strains off an edge are normal to the potential's edge r_g, so t = r_g D^-1 (s - s_a) /
+// (r_g D^-1 r_l).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "mpm_stage/material/material.hpp"
+
+namespace tailrun::mpm {
+
+struct Principal {
+  double s1, s2, s3;
+};
+
+// Returns the stress on or inside the yield surface. `c` Pa, `sin_phi` > 0. Any trial stress is admissible.
+inline Principal return_mohr_coulomb(const MaterialConstants& e, double sin_phi, double c, Principal t) {
+  const double l = e.lambda, G2 = 2.0 * e.mu;
+  const double k = (1.0 + sin_phi) / (1.0 - sin_phi), m = e.m;
+  const double strength = 2.0 * c * std::sqrt(k);
+  const double f = k * t.s1 - t.s3 - strength;
+
+  // Plane: D b = ((l + 2G) m - l, l (m - 1), l m - (l + 2G)), a D b with a = (k, 0, -1).
+  const double Db1 = (l + G2) * m - l, Db2 = l * (m - 1.0), Db3 = l * m - (l + G2);
+  const double dl = f / (k * Db1 - Db3);
+  const double p1 = t.s1 - dl * Db1, p2 = t.s2 - dl * Db2, p3 = t.s3 - dl * Db3;
+
+  // Edges and apex. D^-1 r is proportional to r (1 + nu) - nu tr(r), and 2 nu = l / (l + G).
+  const double nu = 0.5 * l / (l + 0.5 * G2);
+  const double apex = strength / (k - 1.0);
+  const double d1 = t.s1 - apex, d2 = t.s2 - apex, d3 = t.s3 - apex;
+  const double tr_a = 1.0 + 2.0 * m, a1 = 1.0 + nu - nu * tr_a, a2 = m * (1.0 + nu) - nu * tr_a;
+  const double t_a = (a1 * d1 + a2 * (d2 + d3)) / (a1 + 2.0 * a2 * k);
+  const double tr_b = 2.0 + m, b1 = 1.0 + nu - nu * tr_b, b3 = m * (1.0 + nu) - nu * tr_b;
+  const double t_b = (b1 * (d1 + d2) + b3 * d3) / (2.0 * b1 + b3 * k);
+
+  // Past both edges, and where the plane's return is not ordered, the edge that the trial leans towards decides; beyond
+  // its end lies the apex.
+  const bool ordered = p1 >= p2 && p2 >= p3;
+  const bool lower = p2 - p3 < p1 - p2;
+  const double ta = std::min(t_a, 0.0), tb = std::min(t_b, 0.0);
+  const double q1 = apex + (lower ? ta : tb);
+  const double q2 = apex + (lower ? k * ta : tb);
+  const double q3 = apex + (lower ? k * ta : k * tb);
+  const bool yields = f > 0.0;
+  return {yields ? (ordered ? p1 : q1) : t.s1, yields ? (ordered ? p2 : q2) : t.s2,
+          yields ? (ordered ? p3 : q3) : t.s3};
+}
+
+// phi = 0, volume-preserving flow: s1 - s3 = 2 c, on the plane s2 keeps its value, on an edge it joins s1 or s3; the
+// mean stress never changes.
+inline Principal return_tresca(double c, Principal t) {
+  const double excess = t.s1 - t.s3 - 2.0 * c;
+  const double p1 = t.s1 - 0.5 * excess, p3 = t.s3 + 0.5 * excess;
+  const double mean = (t.s1 + t.s2 + t.s3) / 3.0, third = 2.0 / 3.0 * c;
+  const bool above = t.s2 > p1, below = t.s2 < p3;
+  const double q1 = above ? mean + third : (below ? mean + 2.0 * third : p1);
+  const double q2 = above ? mean + third : (below ? mean - third : t.s2);
+  const double q3 = above ? mean - 2.0 * third : (below ? mean - third : p3);
+  const bool yields = excess > 0.0;
+  return {yields ? q1 : t.s1, yields ? q2 : t.s2, yields ? q3 : t.s3};
+}
+
+// Principal tensions above T are cut off (Rankine planes, associated), then what still violates Mohr-Coulomb goes to
+// the planes' intersection. `t` is the trial; called only where the Mohr-Coulomb return `s` has s1 > T.
+inline Principal return_tension_cutoff(const MaterialConstants& e, double sin_phi, double c, double T, Principal t) {
+  const double l = e.lambda, G2 = 2.0 * e.mu;
+  const double k = (1.0 + sin_phi) / (1.0 - sin_phi);
+  const double strength = 2.0 * c * std::sqrt(k);
+  const double floor3 = k * T - strength;  // smallest s3 that Mohr-Coulomb allows with s1 = T
+  Principal s = t;
+  const double one = (t.s1 - T) / (l + G2);
+  s = {T, t.s2 - l * one, t.s3 - l * one};
+  if (s.s2 > T) {
+    const double sum = (t.s1 + t.s2 - 2.0 * T) / (2.0 * l + G2);  // both plastic strains together
+    s = {T, T, t.s3 - l * sum};
+    if (s.s3 > T) return {T, T, T};
+  }
+  if (s.s3 < floor3) {
+    const double sum = ((t.s1 - T) + (t.s3 - floor3)) / (2.0 * l + G2);
+    const double s2 = std::clamp(t.s2 - l * sum, floor3, T);
+    s = {T, s2, floor3};
+  }
+  return s;
+}
+
+}  // namespace tailrun::mpm

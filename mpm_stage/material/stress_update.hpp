@@ -1,0 +1,25 @@
+// The stress of a run of particles of one material after a step: rotate, add the elastic increment, return to the yield
+// surface; volume and pore pressure follow.
+#pragma once
+
+#include <cstddef>
+
+#include "mpm_stage/material/material.hpp"
+#include "mpm_stage/scene/particles.hpp"
+
+namespace tailrun::mpm {
+
+// Particles begin .. end of `P`, whose `gradient` holds the step's midpoint gradient. `trace` has one volumetric strain
+// increment per particle of the run, which takes the place of the particle's own (volumetric_average.hpp). `dt` s.
+// Returns the energy dissipated in plastic and viscous flow, J.
+double update_stress(const MaterialConstants& material, Particles<2>& P, std::size_t begin, std::size_t end,
+                     const double* trace, double dt);
+double update_stress(const MaterialConstants& material, Particles<3>& P, std::size_t begin, std::size_t end,
+                     const double* trace, double dt);
+
+// Recoverable energy of the stresses, J: s : C^-1 : s / 2 (elastic and elasto-plastic solids), K (ln J)^2 / 2 of the
+// fluid, u^2 / (2 K_f / n) of undrained pore water.
+double elastic_energy(const MaterialConstants& material, const Particles<2>& P, std::size_t begin, std::size_t end);
+double elastic_energy(const MaterialConstants& material, const Particles<3>& P, std::size_t begin, std::size_t end);
+
+}  // namespace tailrun::mpm

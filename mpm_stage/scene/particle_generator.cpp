@@ -1,0 +1,182 @@
+// "particles" of mpm.json: boxes and polygons filled with particles, for scenes that need no other program.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <random>
+
+#include "common/error.hpp"
+#include "mpm_stage/scene/scene.hpp"
+
+namespace tailrun::mpm {
+
+namespace {
+
+bool inside_polygon(const std::vector<double>& polygon, double x, double y) {
+  bool inside = false;
+  const std::size_t n = polygon.size() / 2;
+  for (std::size_t i = 0, j = n - 1; i < n; j = i++) {
+    const double xi = polygon[2 * i], yi = polygon[2 * i + 1], xj = polygon[2 * j], yj = polygon[2 * j + 1];
+    if ((yi > y) != (yj > y) && x < (xj - xi) * (y - yi) / (yj - yi) + xi) inside = !inside;
+  }
+  return inside;
+}
+
+double polygon_area(const std::vector<double>& polygon) {
+  double twice = 0.0;
+  const std::size_t n = polygon.size() / 2;
+  for (std::size_t i = 0, j = n - 1; i < n; j = i++)
+    twice += polygon[2 * j] * polygon[2 * i + 1] - polygon[2 * i] * polygon[2 * j + 1];
+  return 0.5 * std::fabs(twice);
+}
+
+// Initial stress, velocity field and position of what one entry of "particles" makes.
+struct Filling {
+  std::array<double, 3> low, high;  // m
+  std::vector<double> polygon;      // m, (n, 2); empty for a box
+  std::array<int, 3> count{1, 1, 1};
+  bool random = false;
+  unsigned seed = 1;
+  std::array<double, 3> velocity{};
+  double spin = 0.0;  // 1/s, about the centre, in the x-y plane
+  std::array<double, 3> centre{};
+  std::vector<double> wave;  // amplitude (m/s), wave number (1/m), axis of motion, axis of variation
+  bool geostatic = false;
+  double surface = 0.0, k0 = 1.0;
+  double rotation = 0.0;  // radians, of a box about its low corner
+};
+
+Filling read_filling(const CaseNode& node, int dimension, double h, const std::array<double, 3>& origin) {
+  Filling f;
+  const std::string shape = node.choice("shape", {"box", "polygon"});
+  if (shape == "polygon") {
+    if (dimension == 3) node.fail("shape", "a polygon needs dimension 2");
+    f.polygon = node.table("points", "m", 2);
+    if (f.polygon.size() < 6) node.fail("points", "a polygon needs at least 3 points");
+    f.low = {f.polygon[0], f.polygon[1], 0.0};
+    f.high = f.low;
+    for (std::size_t i = 0; i < f.polygon.size(); ++i) {
+      f.low[i % 2] = std::min(f.low[i % 2], f.polygon[i]);
+      f.high[i % 2] = std::max(f.high[i % 2], f.polygon[i]);
+    }
+    // Points lie on the grid's own pattern, so that a polygon that follows cell edges is filled evenly.
+    for (int d = 0; d < 2; ++d) {
+      f.low[d] = origin[d] + std::floor((f.low[d] - origin[d]) / h + 1e-9) * h;
+      f.high[d] = origin[d] + std::ceil((f.high[d] - origin[d]) / h - 1e-9) * h;
+    }
+  } else {
+    const auto low = node.numbers("low", "m", Range::any(), static_cast<std::size_t>(dimension));
+    const auto high = node.numbers("high", "m", Range::any(), static_cast<std::size_t>(dimension));
+    for (int d = 0; d < dimension; ++d) {
+      if (!(high[d] > low[d])) node.fail("high", "must be larger than low in every direction");
+      f.low[d] = low[d];
+      f.high[d] = high[d];
+    }
+    f.rotation = node.number_or("rotation", "deg", Range::between(-180.0, 180.0), 0.0) * M_PI / 180.0;
+    if (f.rotation != 0.0 && dimension == 3) node.fail("rotation", "needs dimension 2");
+  }
+  const int per_cell = static_cast<int>(node.integer_or("points_per_cell_side", 1, 10, 2));
+  for (int d = 0; d < dimension; ++d)
+    f.count[d] = std::max(1, static_cast<int>(std::lround((f.high[d] - f.low[d]) / h * per_cell)));
+  f.random = node.choice_or("placement", {"regular", "random"}, "regular") == "random";
+  f.seed = static_cast<unsigned>(node.integer_or("seed", 0, 1000000, 1));
+  const auto velocity = node.numbers_or("velocity", "m/s", Range::any(), std::vector<double>(dimension, 0.0),
+                                        static_cast<std::size_t>(dimension));
+  for (int d = 0; d < dimension; ++d) {
+    f.velocity[d] = velocity[d];
+    f.centre[d] = 0.5 * (f.low[d] + f.high[d]);
+  }
+  f.spin = node.number_or("angular_velocity", "rad/s", Range::any(), 0.0);
+  if (const auto wave = node.object_if("velocity_wave")) {
+    f.wave = {wave->number("amplitude", "m/s", Range::any()), wave->number("wave_number", "1/m", Range::any()),
+              static_cast<double>(wave->integer_or("motion_axis", 0, dimension - 1, 0)),
+              static_cast<double>(wave->integer_or("variation_axis", 0, dimension - 1, 0))};
+  }
+  if (const auto stress = node.object_if("stress")) {
+    stress->choice("kind", {"geostatic"});
+    f.geostatic = true;
+    f.surface = stress->number("surface", "m", Range::any());
+    f.k0 = stress->number_or("k0", "1", Range::between(0.0, 5.0), 1.0);
+  }
+  return f;
+}
+
+void fill(const Filling& f, int dimension, int material, double density, const std::array<double, 3>& gravity,
+          ParticleSet& set) {
+  std::array<double, 3> size{1.0, 1.0, 1.0};
+  for (int d = 0; d < dimension; ++d) size[d] = (f.high[d] - f.low[d]) / f.count[d];
+  const double volume = size[0] * size[1] * size[2];
+  std::mt19937 random(f.seed);
+  std::uniform_real_distribution<double> jitter(0.0, 1.0);
+  const std::size_t first = set.count();
+  for (int k = 0; k < f.count[2]; ++k)
+    for (int j = 0; j < f.count[1]; ++j)
+      for (int i = 0; i < f.count[0]; ++i) {
+        const std::array<int, 3> index = {i, j, k};
+        std::array<double, 3> x{};
+        for (int d = 0; d < dimension; ++d) x[d] = f.low[d] + (index[d] + (f.random ? jitter(random) : 0.5)) * size[d];
+        if (!f.polygon.empty() && !inside_polygon(f.polygon, x[0], x[1])) continue;
+        std::array<double, 3> v = f.velocity;
+        v[0] -= f.spin * (x[1] - f.centre[1]);
+        v[1] += f.spin * (x[0] - f.centre[0]);
+        if (!f.wave.empty())
+          v[static_cast<int>(f.wave[2])] +=
+              f.wave[0] * std::sin(f.wave[1] * (x[static_cast<int>(f.wave[3])] - f.low[static_cast<int>(f.wave[3])]));
+        if (f.rotation != 0.0) {
+          const double c = std::cos(f.rotation), s = std::sin(f.rotation), dx = x[0] - f.low[0], dy = x[1] - f.low[1];
+          x[0] = f.low[0] + c * dx - s * dy;
+          x[1] = f.low[1] + s * dx + c * dy;
+          v = {c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]};
+        }
+        for (int d = 0; d < 3; ++d) {
+          set.position.push_back(x[d]);
+          set.velocity.push_back(v[d]);
+        }
+        set.mass.push_back(density * volume);
+        set.volume.push_back(volume);
+        set.material_id.push_back(material);
+        const double vertical = f.geostatic ? std::min(0.0, density * gravity[1] * (f.surface - x[1])) : 0.0;
+        std::vector<double> stress = {f.k0 * vertical, vertical, f.k0 * vertical};
+        stress.resize(static_cast<std::size_t>(set.components()), 0.0);
+        set.effective_stress.insert(set.effective_stress.end(), stress.begin(), stress.end());
+      }
+  // A polygon's particles share its exact area.
+  if (!f.polygon.empty() && set.count() > first) {
+    const double scale = polygon_area(f.polygon) / (volume * static_cast<double>(set.count() - first));
+    for (std::size_t p = first; p < set.count(); ++p) {
+      set.mass[p] *= scale;
+      set.volume[p] *= scale;
+    }
+  }
+}
+
+}  // namespace
+
+ParticleSet generate_particles(const CaseNode& root, int dimension, double cell_size, std::array<double, 3> origin,
+                               const std::array<double, 3>& gravity, std::vector<Material>& materials) {
+  ParticleSet set;
+  set.dimension = dimension;
+  std::vector<std::string> names;
+  for (const auto& m : materials) names.push_back(m.name);
+  for (const CaseNode& node : root.list("particles")) {
+    const std::string name = node.text("material");
+    std::size_t material = 0;
+    while (material < names.size() && names[material] != name) ++material;
+    if (material == names.size())
+      node.fail("material", fmt::format("'{}' is not one of the materials ({}).{}", name, joined(names),
+                                        did_you_mean(name, names)));
+    if (materials[material].model == Model::rigid) node.fail("material", "particles cannot be of a rigid material");
+    fill(read_filling(node, dimension, cell_size, origin), dimension, static_cast<int>(material),
+         materials[material].density, gravity, set);
+  }
+  if (set.count() == 0) root.fail("particles", "no particle lies inside the shapes given");
+  set.material_names = names;
+  set.region_names = {"scene"};
+  set.region_id.assign(set.count(), 0);
+  set.pore_pressure.assign(set.count(), 0.0);
+  double volume = 0.0;
+  for (const double v : set.volume) volume += v;
+  set.particle_size = std::pow(volume / static_cast<double>(set.count()), 1.0 / dimension);
+  return set;
+}
+
+}  // namespace tailrun::mpm

@@ -1,0 +1,96 @@
+// Everything that mpm.json says, checked and in SI units.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/case_file.hpp"
+#include "common/motion.hpp"
+#include "common/particles.hpp"
+#include "mpm_stage/boundary/terrain.hpp"
+#include "mpm_stage/boundary/walls.hpp"
+#include "mpm_stage/material/material.hpp"
+#include "mpm_stage/step/solver.hpp"
+
+namespace tailrun::mpm {
+
+struct RestCriterion {
+  bool active = true;
+  double speed = 0.01;    // m/s, root mean square speed of the moving materials and speed of the front
+  double duration = 1.0;  // s, for which both have to hold
+};
+
+struct TrackedPoint {
+  std::string name;
+  std::array<double, 2> position;  // m, at the start; the nearest particle of a moving material is followed
+};
+
+struct OutputOptions {
+  double frame_interval = 1.0;    // s of simulated time; 0: no frames
+  double series_interval = 0.05;  // s
+  bool compress = true;
+  double checkpoint_interval = 600.0;  // s of wall time; 0: none
+  int front_axis = 0;                  // coordinate along which the front runs
+  double front_sign = 1.0;             // +1: towards larger coordinates
+  double front_quantile = 0.999;       // 1, share of the moving mass behind the robust front
+  std::vector<TrackedPoint> points;
+  std::vector<std::string> fields;  // extra fields of the frames
+};
+
+struct BaseMotion {
+  std::optional<Motion> motion;
+  double start = 0.0;  // s of the motion at which this run begins
+  std::array<double, 3> direction{1, 0, 0};
+  bool shaken() const { return motion.has_value(); }
+};
+
+// One line of the terrain before its friction has been laid out over the segments.
+struct TerrainInput {
+  std::string name;
+  std::vector<std::array<double, 2>> points;
+  std::vector<double> friction;  // per segment
+  bool adhere = false;
+};
+
+struct Scene {
+  std::string title;
+  int dimension = 2;
+  double cell_size = 0.0;           // m
+  std::array<double, 3> origin{};   // m, a node
+  std::array<double, 3> gravity{};  // m/s2
+  double end_time = 0.0;            // s, counted from the start of this run
+  SolverOptions solver;
+  RestCriterion rest;
+  Walls<3> walls;
+  std::vector<Material> materials;  // in the order of ParticleSet::material_names
+  ParticleSet particles;            // rigid materials already taken out
+  std::vector<double> cohesion;     // Pa, per particle
+  Terrain terrain;
+  std::vector<TerrainInput> terrain_lines;
+  BaseMotion base;
+  OutputOptions output;
+  std::vector<std::string> remarks;           // what was left out or assumed, for the summary
+  std::vector<std::filesystem::path> inputs;  // every file read besides the case file
+  double energy_growth_limit = 0.02;          // 1, of the energy released so far; beyond it the run stops
+};
+
+// Reads a scene. `particles_override` takes the place of the case file's "particles_file". Throws InputError.
+Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_override);
+
+// Parts of read_scene, each in its own file.
+Material read_material(const std::string& name, const CaseNode& node, double residual_factor);
+ParticleSet generate_particles(const CaseNode& root, int dimension, double cell_size, std::array<double, 3> origin,
+                               const std::array<double, 3>& gravity, std::vector<Material>& materials);
+std::vector<TerrainInput> read_terrain(const CaseNode& root, const ParticleSet& particles);
+std::vector<double> assign_cohesion(const CaseFile& file, const std::vector<Material>& materials,
+                                    ParticleSet& particles);
+
+// Structure of arrays for the solver, in the order of the set (identity = index). `total` materials carry total stress.
+template <int Dim>
+Particles<Dim> solver_particles(const Scene& scene);
+
+}  // namespace tailrun::mpm

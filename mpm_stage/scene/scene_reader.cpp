@@ -1,0 +1,226 @@
+// mpm.json from top to bottom.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.hpp"
+#include "mpm_stage/scene/scene.hpp"
+
+namespace tailrun::mpm {
+
+namespace {
+
+void read_domain(const CaseNode& root, Scene& scene) {
+  const auto node = root.object_if("domain");
+  Walls<3>& walls = scene.walls;
+  if (!node) return;
+  const auto n = static_cast<std::size_t>(scene.dimension);
+  const auto low = node->numbers("low", "m", Range::any(), n), high = node->numbers("high", "m", Range::any(), n);
+  walls.bounded = true;
+  for (std::size_t d = 0; d < n; ++d) {
+    const double cells = (high[d] - low[d]) / scene.cell_size;
+    if (!(cells > 0.0) || std::fabs(cells - std::round(cells)) > 1e-6)
+      node->fail("high",
+                 fmt::format("the domain is {} cells of {} m long in direction {}; it must be a whole number of cells",
+                             cells, scene.cell_size, d));
+    walls.low[d] = scene.origin[d] = low[d];
+    walls.high[d] = high[d];
+  }
+  const CaseNode sides = node->object_or_empty("walls");
+  const std::array<std::array<const char*, 2>, 3> names = {{{"left", "right"}, {"bottom", "top"}, {"back", "front"}}};
+  for (int d = 0; d < scene.dimension; ++d)
+    for (int s = 0; s < 2; ++s) {
+      const auto side = sides.object_if(names[d][s]);
+      if (!side) continue;
+      const std::string kind = side->choice("kind", {"open", "fixed", "slip", "frictional"});
+      auto& wall = walls.side[d][s];
+      wall.kind = kind == "open"    ? WallKind::open
+                  : kind == "fixed" ? WallKind::fixed
+                  : kind == "slip"  ? WallKind::slip
+                                    : WallKind::frictional;
+      if (wall.kind == WallKind::frictional) wall.friction = side->number("friction", "1", Range::non_negative());
+    }
+  walls.leaving = node->choice_or("leaving_particles", {"error", "remove"}, "error") == "error"
+                      ? LeavingParticles::error
+                      : LeavingParticles::remove;
+}
+
+void read_scheme(const CaseNode& root, Scene& scene) {
+  const CaseNode scheme = root.object_or_empty("scheme");
+  SolverOptions& o = scene.solver;
+  const std::string shape = scheme.choice_or("shape_function", {"linear", "quadratic", "cubic", "gimp"}, "quadratic");
+  o.shape = shape == "linear"      ? ShapeName::linear
+            : shape == "quadratic" ? ShapeName::quadratic
+            : shape == "cubic"     ? ShapeName::cubic
+                                   : ShapeName::gimp;
+  o.transfer =
+      scheme.choice_or("transfer", {"apic", "flip"}, "apic") == "apic" ? TransferName::apic : TransferName::flip;
+  if (o.transfer == TransferName::flip)
+    o.flip_share = scheme.number_or("flip_share", "1", Range::between(0.0, 1.0), 0.99);
+  o.volumetric_average = scheme.boolean_or("volumetric_average", true);
+  o.contact_reach = scheme.number_or("contact_reach", "cells", Range::between(0.0, 1.0), o.contact_reach);
+  o.mass_cutoff = scheme.number_or("mass_cutoff", "1", Range::between(0.0, 0.1), o.mass_cutoff);
+  o.local_damping = root.object_or_empty("damping").number_or("local", "1", Range::between(0.0, 0.99), 0.0);
+}
+
+void read_time(const CaseNode& root, Scene& scene) {
+  const CaseNode time = root.object("time");
+  scene.end_time = time.number("end", "s", Range::positive());
+  scene.solver.courant = time.number_or("courant", "1", {0.0, 1.5, true, false}, scene.solver.courant);
+  scene.solver.maximum_step = time.number_or("maximum_step", "s", Range::positive(), 1e30);
+  scene.energy_growth_limit = time.number_or("energy_growth_limit", "1", Range::positive(), scene.energy_growth_limit);
+  const CaseNode rest = time.object_or_empty("rest");
+  scene.rest.active = rest.boolean_or("stop", true);
+  scene.rest.speed = rest.number_or("speed", "m/s", Range::positive(), scene.rest.speed);
+  scene.rest.duration = rest.number_or("duration", "s", Range::positive(), scene.rest.duration);
+}
+
+void read_output(const CaseNode& root, Scene& scene) {
+  const CaseNode node = root.object_or_empty("output");
+  OutputOptions& o = scene.output;
+  o.frame_interval = node.number_or("frame_interval", "s", Range::non_negative(), o.frame_interval);
+  o.series_interval = node.number_or("series_interval", "s", Range::positive(), o.series_interval);
+  o.checkpoint_interval = node.number_or("checkpoint_interval", "s", Range::non_negative(), o.checkpoint_interval);
+  const std::string direction = node.choice_or("front_direction", {"+x", "-x", "+y", "-y", "+z", "-z"}, "+x");
+  o.front_sign = direction[0] == '+' ? 1.0 : -1.0;
+  o.front_axis = direction[1] - 'x';
+  if (o.front_axis >= scene.dimension) node.fail("front_direction", "z needs dimension 3");
+  o.front_quantile = node.number_or("front_quantile", "1", Range::between(0.5, 1.0), o.front_quantile);
+  for (const CaseNode& point : node.list_or_empty("points")) {
+    const auto x = point.numbers("position", "m", Range::any(), 2);
+    o.points.push_back({point.text("name"), {x[0], x[1]}});
+  }
+}
+
+void read_base_motion(const CaseNode& root, Scene& scene) {
+  const auto node = root.object_if("base_motion");
+  if (!node) return;
+  const auto path = node->file("file");
+  Motion motion = read_motion(path);
+  if (const auto peak = node->number_if("peak_acceleration", "m/s2", Range::positive()))
+    motion = scaled_to_peak(std::move(motion), *peak);
+  scene.base.start = node->number_or("start", "s", Range::non_negative(), scene.particles.transfer_time);
+  const auto direction = node->numbers_or("direction", "1", Range::any(), {1.0, 0.0}, 2);
+  const double length = std::hypot(direction[0], direction[1]);
+  if (!(length > 0.0)) node->fail("direction", "must not be zero");
+  scene.base.direction = {direction[0] / length, direction[1] / length, 0.0};
+  scene.base.motion = std::move(motion);
+  scene.inputs.push_back(path);
+}
+
+template <class Column>
+void keep_rows(Column& column, const std::vector<std::size_t>& rows, std::size_t count) {
+  if (column.empty()) return;
+  const std::size_t width = column.size() / count;
+  Column kept(rows.size() * width);
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    std::copy_n(column.begin() + static_cast<std::ptrdiff_t>(rows[r] * width), width,
+                kept.begin() + static_cast<std::ptrdiff_t>(r * width));
+  column.swap(kept);
+}
+
+// Particles of rigid materials take no part: the terrain stands in their place.
+void drop_rigid(Scene& scene) {
+  ParticleSet& set = scene.particles;
+  std::vector<std::size_t> rows;
+  for (std::size_t p = 0; p < set.count(); ++p)
+    if (scene.materials[static_cast<std::size_t>(set.material_id[p])].model != Model::rigid) rows.push_back(p);
+  const std::size_t n = set.count();
+  if (rows.size() == n) return;
+  scene.remarks.push_back(
+      fmt::format("{} of {} particles are of rigid materials and were left out", n - rows.size(), n));
+  keep_rows(set.position, rows, n);
+  keep_rows(set.velocity, rows, n);
+  keep_rows(set.volume, rows, n);
+  keep_rows(set.effective_stress, rows, n);
+  keep_rows(set.pore_pressure, rows, n);
+  keep_rows(set.material_id, rows, n);
+  keep_rows(set.region_id, rows, n);
+  keep_rows(set.source_element, rows, n);
+  keep_rows(set.initial_vertical_effective_stress, rows, n);
+  keep_rows(set.depth, rows, n);
+  keep_rows(set.excess_pore_pressure_ratio, rows, n);
+  keep_rows(set.residual_strength, rows, n);
+  keep_rows(set.plastic_deviatoric_strain, rows, n);
+  keep_rows(set.displacement, rows, n);
+  for (auto& [name, values] : set.extra) keep_rows(values, rows, n);
+  keep_rows(set.mass, rows, n);
+}
+
+// Every material name of the particles file needs an entry; entries that no particle uses are only remarked on.
+std::vector<Material> order_materials(const CaseFile& file, const std::vector<Material>& given, const ParticleSet& set,
+                                      Scene& scene) {
+  std::vector<Material> ordered;
+  std::vector<std::string> names;
+  for (const auto& m : given) names.push_back(m.name);
+  std::vector<bool> used(set.material_names.size(), false);
+  for (const auto id : set.material_id) used[static_cast<std::size_t>(id)] = true;
+  for (std::size_t k = 0; k < set.material_names.size(); ++k) {
+    const auto& name = set.material_names[k];
+    const auto it = std::find(names.begin(), names.end(), name);
+    if (it == names.end()) {
+      if (used[k])
+        throw InputError(fmt::format(
+            "{}: /materials has no entry '{}', which particles of the particles file are made of (it has: {}).{}",
+            file.path().string(), name, joined(names), did_you_mean(name, names)));
+      ordered.push_back({});
+      ordered.back().name = name;
+      ordered.back().model = Model::rigid;
+      continue;
+    }
+    ordered.push_back(given[static_cast<std::size_t>(it - names.begin())]);
+  }
+  for (const auto& name : names)
+    if (std::find(set.material_names.begin(), set.material_names.end(), name) == set.material_names.end())
+      scene.remarks.push_back(fmt::format("material '{}' is not used by any particle", name));
+  return ordered;
+}
+
+}  // namespace
+
+Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_override) {
+  const CaseNode root = file.root();
+  Scene scene;
+  scene.title = root.text_or("title", file.path().parent_path().filename().string());
+  scene.dimension = static_cast<int>(root.integer_or("dimension", 2, 3, 2));
+  scene.cell_size = root.object("grid").number("cell_size", "m", Range::positive());
+  const auto dimension = static_cast<std::size_t>(scene.dimension);
+  std::vector<double> down(dimension, 0.0);
+  down[1] = -9.81;
+  const auto gravity = root.numbers_or("gravity", "m/s2", Range::any(), down, dimension);
+  std::copy(gravity.begin(), gravity.end(), scene.gravity.begin());
+  read_domain(root, scene);
+  read_scheme(root, scene);
+  read_time(root, scene);
+
+  const double factor = root.object_or_empty("residual_strength").number_or("factor", "1", Range::positive(), 1.0);
+  std::vector<Material> materials;
+  for (const auto& [name, node] : root.object("materials").members())
+    materials.push_back(read_material(name, node, factor));
+
+  if (root.has("particles") && particles_override.empty()) {
+    scene.particles =
+        generate_particles(root, scene.dimension, scene.cell_size, scene.origin, scene.gravity, materials);
+    scene.materials = materials;
+  } else {
+    const auto path = particles_override.empty() ? root.file("particles_file") : particles_override;
+    if (!particles_override.empty()) root.text_or("particles_file", "");
+    scene.particles = read_particles(path);
+    scene.inputs.push_back(path);
+    if (scene.particles.dimension != scene.dimension)
+      root.fail("dimension", fmt::format("is {}, but {} holds particles of dimension {}", scene.dimension,
+                                         path.string(), scene.particles.dimension));
+    scene.materials = order_materials(file, materials, scene.particles, scene);
+  }
+  scene.terrain_lines = read_terrain(root, scene.particles);
+  for (const auto& line : scene.terrain_lines) scene.terrain.add_line(line.points, line.friction, line.adhere);
+  drop_rigid(scene);
+  if (scene.particles.count() == 0) root.fail("materials", "no particle is left: all materials are rigid");
+  scene.cohesion = assign_cohesion(file, scene.materials, scene.particles);
+  read_base_motion(root, scene);
+  read_output(root, scene);
+  return scene;
+}
+
+}  // namespace tailrun::mpm

@@ -1,0 +1,497 @@
+// The explicit step, symplectic Euler on the grid (Sulsky, Chen & Schreyer 1994), in the order
+//   nodes:      v = p / m, body forces, damping, walls, ground
+//   G2P:        velocities, affine velocities, gradients; particles move
+//   sort:       only when some particle may have left its block's margin
+//   average:    volumetric increments (the cure of locking)
+//   stress:     constitutive update, volumes
+//   P2G:        of the next step, with its time step
+// Every loop runs over blocks in parallel and writes what is its block's own; sums over blocks are taken in block order
+// afterwards, so results do not depend on the number of threads.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "common/error.hpp"
+#include "mpm_stage/grid/tiles.hpp"
+#include "mpm_stage/material/stress_update.hpp"
+#include "mpm_stage/step/grid_update.hpp"
+#include "mpm_stage/step/solver.hpp"
+#include "mpm_stage/transfer/grid_to_particles.hpp"
+#include "mpm_stage/transfer/particles_to_grid.hpp"
+#include "mpm_stage/transfer/volumetric_average.hpp"
+
+namespace tailrun::mpm {
+
+// Split keeps momentum and forces apart (FLIP and damping need both). Flip: FLIP/PIC blend, else APIC.
+template <int Dim, class Shape, bool Split, bool Flip>
+class ExplicitSolver final : public Solver<Dim> {
+ public:
+  ExplicitSolver(const SolverOptions& options, double cell_size, std::array<double, Dim> origin,
+                 Particles<Dim> particles, const std::vector<Material>& materials, const Terrain& terrain,
+                 const Walls<Dim>& walls)
+      : options_(options),
+        h_(cell_size),
+        h1_(1.0 / cell_size),
+        grid_(cell_size, origin, Shape::shift),
+        P_(std::move(particles)),
+        materials_(materials),
+        walls_(walls),
+        ground_(terrain, options.contact_reach * cell_size) {
+    double mass = 0.0;
+    for (const double m : P_.mass) mass += m;
+    mass_cutoff_ = options.mass_cutoff * mass / static_cast<double>(std::max<std::size_t>(1, P_.count()));
+    averaging_ = false;
+    for (const auto& m : materials_) {
+      constants_.push_back(constants_of(m, cell_size));
+      constants_.back().averaged = constants_.back().averaged && options.volumetric_average;
+      averaging_ = averaging_ || constants_.back().averaged;
+    }
+    for (int d = 0; d < Dim; ++d)
+      for (int s = 0; s < 2; ++s) {
+        auto& side = wall_nodes_.side[d][s];
+        side.kind = walls.bounded ? walls.side[d][s].kind : WallKind::open;
+        side.friction = walls.side[d][s].friction;
+        side.node = static_cast<int>(std::lround(((s == 0 ? walls.low[d] : walls.high[d]) - origin[d]) * h1_));
+        wall_nodes_.any = wall_nodes_.any || side.kind != WallKind::open;
+      }
+  }
+
+  void start(double limit) override {
+    sort();
+    double fastest = 0.0;
+    for (std::size_t b = 0; b < grid_.occupied(); ++b)
+      for (const Run& run : grid_.runs(b))
+        for (std::size_t p = run.begin; p < run.end; ++p)
+          fastest = std::max(fastest, wave_speed_[run.material] + std::sqrt(speed_squared(p)));
+    next_dt_ = std::min({options_.courant * h_ / fastest, options_.maximum_step, viscous_limit_, limit});
+    particles_to_grid();
+  }
+
+  StepReport step(const std::array<double, Dim>& body, const std::array<double, Dim>& inertial, double limit) override {
+    StepReport report;
+    const double dt = next_dt_;
+    report.dt = dt;
+    update_grid(dt, body, inertial);
+    gather(dt, report);
+    if (drift_ > 0.99 || leaving_) {
+      sort();
+      report.sorted = true;
+    }
+    next_dt_ = std::min({options_.courant * h_ / fastest_wave_, options_.maximum_step, viscous_limit_, limit});
+    report.next_dt = next_dt_;
+    if (averaging_) average();
+    update_stresses(dt);
+    particles_to_grid();
+    return report;
+  }
+
+  double next_dt() const override { return next_dt_; }
+  Particles<Dim>& particles() override { return P_; }
+  const BlockGrid<Dim>& grid() const override { return grid_; }
+  const WorkDone& work() const override { return work_; }
+  const PhaseSeconds& seconds() const override { return seconds_; }
+  std::array<double, Dim> boundary_impulse() const override { return impulse_; }
+  std::vector<std::int32_t> removed() const override { return removed_; }
+  long sorts() const override { return sorts_; }
+
+  double elastic_energy() const override {
+    double energy = 0.0;
+    for (std::size_t b = 0; b < grid_.occupied(); ++b)
+      for (const Run& run : grid_.runs(b))
+        energy += mpm::elastic_energy(constants_[run.material], P_, run.begin, run.end);
+    return energy;
+  }
+
+  double unbalanced_force_ratio(const std::array<double, Dim>& body) const override;
+
+  std::size_t grid_bytes() const override {
+    return grid_.bytes() +
+           (tiles_.capacity() + forces_.capacity() + velocity_.capacity() + change_.capacity()) * sizeof(Vec4) +
+           averaged_tiles_.capacity() * sizeof(AveragedNode) + averaged_.capacity() * sizeof(double);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr int tile_nodes = Tile<Dim, Shape>::nodes;
+  static constexpr int block_nodes = Block<Dim>::nodes;
+
+  static void add_time(double& phase, Clock::time_point since) {
+    phase += std::chrono::duration<double>(Clock::now() - since).count();
+  }
+
+  std::array<double, Dim> corner(std::size_t b) const {
+    std::array<double, Dim> c;
+    for (int d = 0; d < Dim; ++d)
+      c[d] = grid_.origin()[d] + (grid_.occupied_index(b)[d] * Block<Dim>::cells + Tile<Dim, Shape>::low) * h_;
+    return c;
+  }
+
+  double speed_squared(std::size_t p) const {
+    double s = 0.0;
+    for (int d = 0; d < Dim; ++d) s += P_.velocity[d][p] * P_.velocity[d][p];
+    return s;
+  }
+
+  void sort();
+  void update_grid(double dt, const std::array<double, Dim>& body, const std::array<double, Dim>& inertial);
+  void gather(double dt, StepReport& report);
+  void average();
+  void update_stresses(double dt);
+  void particles_to_grid();
+  [[noreturn]] void fail(std::size_t begin, std::size_t end, const std::string& what) const;
+
+  SolverOptions options_;
+  double h_, h1_;
+  BlockGrid<Dim> grid_;
+  Particles<Dim> P_;
+  std::vector<Material> materials_;
+  std::vector<MaterialConstants> constants_;
+  Walls<Dim> walls_;
+  WallNodes<Dim> wall_nodes_;
+  ContactNodes<Dim> ground_;
+  bool averaging_ = false, leaving_ = false;
+  double mass_cutoff_ = 0.0, next_dt_ = 0.0, drift_ = 0.0, fastest_wave_ = 0.0, viscous_limit_ = 1e30;
+  std::vector<double> wave_speed_;  // m/s, by material
+
+  AlignedVector<Vec4> tiles_, forces_;     // per occupied block
+  AlignedVector<Vec4> velocity_, change_;  // per active block
+  std::vector<AveragedNode> averaged_tiles_;
+  std::vector<double> averaged_;
+  std::vector<GridSums<Dim>> grid_sums_;
+  struct BlockMotion {
+    double far = 0.0, wave = 0.0, fast = 0.0, kinetic = 0.0;
+    bool outside = false;
+  };
+  std::vector<BlockMotion> motion_;
+  std::vector<double> dissipated_;
+
+  WorkDone work_;
+  PhaseSeconds seconds_;
+  std::array<double, Dim> impulse_{};
+  std::vector<std::int32_t> removed_;
+  long sorts_ = 0;
+};
+
+template <int Dim, class Shape, bool Split, bool Flip>
+void ExplicitSolver<Dim, Shape, Split, Flip>::sort() {
+  const auto since = Clock::now();
+  std::vector<std::uint8_t> keep;
+  if (leaving_) {
+    keep.assign(P_.count(), 1);
+    for (std::size_t p = 0; p < P_.count(); ++p)
+      for (int d = 0; d < Dim; ++d)
+        if (P_.position[d][p] < walls_.low[d] || P_.position[d][p] > walls_.high[d]) keep[p] = 0;
+    for (std::size_t p = 0; p < P_.count(); ++p) {
+      if (keep[p]) continue;
+      if (walls_.leaving == LeavingParticles::error) fail(p, p + 1, "left the domain (see domain/leaving_particles)");
+      removed_.push_back(P_.identity[p]);
+      work_.removed += 0.5 * P_.mass[p] * speed_squared(p);
+    }
+  }
+  grid_.sort(P_, keep);
+  if (grid_.occupied() == 0) throw ComputationError("no particle is left in the domain");
+  ground_.update(grid_);
+  ++sorts_;
+  drift_ = 0.0;
+  leaving_ = false;
+  tiles_.resize(grid_.occupied() * tile_nodes);
+  if (Split) forces_.resize(tiles_.size());
+  velocity_.resize(grid_.active() * block_nodes);
+  if (Split) change_.resize(velocity_.size());
+  if (averaging_) {
+    averaged_tiles_.resize(tiles_.size());
+    averaged_.resize(velocity_.size());
+  }
+  grid_sums_.resize(grid_.active());
+  motion_.resize(grid_.occupied());
+  dissipated_.resize(grid_.occupied());
+
+  // Wave speeds follow the lowest density of each material.
+  std::vector<double> density(constants_.size(), 1e300);
+  for (std::size_t p = 0; p < P_.count(); ++p)
+    density[P_.material[p]] = std::min(density[P_.material[p]], P_.mass[p] / P_.volume[p]);
+  wave_speed_.assign(constants_.size(), 0.0);
+  viscous_limit_ = 1e30;
+  for (std::size_t m = 0; m < constants_.size(); ++m) {
+    if (density[m] > 1e299) continue;
+    wave_speed_[m] = std::sqrt(constants_[m].wave_modulus() / density[m]);
+    if (constants_[m].model == Model::newtonian_fluid && constants_[m].consistency > 0.0)
+      viscous_limit_ =
+          std::min(viscous_limit_, options_.courant * h_ * h_ * density[m] / (2.0 * Dim * constants_[m].consistency));
+  }
+  add_time(seconds_.sort, since);
+}
+
+template <int Dim, class Shape, bool Split, bool Flip>
+void ExplicitSolver<Dim, Shape, Split, Flip>::update_grid(double dt, const std::array<double, Dim>& body,
+                                                          const std::array<double, Dim>& inertial) {
+  const auto since = Clock::now();
+  constexpr int B = Block<Dim>::cells;
+  bool shaken = false;
+  for (const double a : inertial) shaken = shaken || a != 0.0;
+#pragma omp parallel for schedule(static)
+  for (std::size_t a = 0; a < grid_.active(); ++a) {
+    Vec4 sum[block_nodes], force[Split ? block_nodes : 1];
+    gather_tiles<Dim, Shape>(grid_, a, tiles_.data(), sum);
+    if constexpr (Split) gather_tiles<Dim, Shape>(grid_, a, forces_.data(), force);
+    GridSums<Dim> sums;
+    const NodeContact* contact = ground_.of_block(a);
+    for (int n = 0; n < block_nodes; ++n) {
+      const double m = sum[n][0];
+      Vec4& out = velocity_[a * block_nodes + n];
+      if (m <= mass_cutoff_) {
+        out = Vec4{};
+        if constexpr (Split) change_[a * block_nodes + n] = Vec4{};
+        continue;
+      }
+      std::array<double, Dim> v, before{};
+      for (int d = 0; d < Dim; ++d) {
+        v[d] = sum[n][1 + d] / m;
+        if constexpr (Split) {
+          before[d] = v[d];
+          v[d] += dt * force[n][1 + d] / m;
+        }
+        v[d] += dt * (body[d] + inertial[d]);
+      }
+      if constexpr (Split)
+        if (options_.local_damping > 0.0)
+          sums.damping += m * apply_local_damping<Dim>(options_.local_damping, dt, before, v);
+      const std::array<double, Dim> pushed = v;
+      if (contact && contact[n].count > 0) apply_ground<Dim>(contact[n], m, v, sums);
+      if (wall_nodes_.any) {
+        std::array<int, Dim> node;
+        for (int d = 0, k = n; d < Dim; ++d, k /= B) node[d] = grid_.active_index(a)[d] * B + k % B;
+        apply_walls<Dim>(wall_nodes_, node, m, v, sums);
+      }
+      for (int d = 0; d < Dim; ++d) sums.impulse[d] += m * (v[d] - pushed[d]);
+      if (shaken)
+        for (int d = 0; d < Dim; ++d) sums.external += dt * m * inertial[d] * v[d];
+      out = node_velocity<Dim>(v.data());
+      if constexpr (Split) {
+        for (int d = 0; d < Dim; ++d) before[d] = v[d] - before[d];
+        change_[a * block_nodes + n] = node_velocity<Dim>(before.data());
+      }
+    }
+    grid_sums_[a] = sums;
+  }
+  for (const auto& s : grid_sums_) {
+    work_.friction += s.friction;
+    work_.damping += s.damping;
+    work_.external += s.external;
+    for (int d = 0; d < Dim; ++d) impulse_[d] += s.impulse[d];
+  }
+  add_time(seconds_.grid, since);
+}
+
+template <int Dim, class Shape, bool Split, bool Flip>
+void ExplicitSolver<Dim, Shape, Split, Flip>::gather(double dt, StepReport& report) {
+  const auto since = Clock::now();
+  const GridToParticles s{dt, h1_, options_.flip_share};
+#pragma omp parallel for schedule(static)
+  for (std::size_t b = 0; b < grid_.occupied(); ++b) {
+    Vec4 tile[tile_nodes], change[Flip ? tile_nodes : 1];
+    load_tile<Dim, Shape>(grid_, b, velocity_.data(), tile);
+    if constexpr (Flip) load_tile<Dim, Shape>(grid_, b, change_.data(), change);
+    BlockMotion motion;
+    for (const Run& run : grid_.runs(b)) {
+      const MotionExtremes e = mpm::grid_to_particles<Shape, Flip>(s, tile, change, corner(b), P_, run.begin, run.end);
+      motion.far = std::max(motion.far, e.displacement);
+      motion.fast = std::max(motion.fast, e.speed_squared);
+      motion.wave = std::max(motion.wave, wave_speed_[run.material] + std::sqrt(e.speed_squared));
+      motion.kinetic += e.kinetic;
+    }
+    if (walls_.bounded) {
+      // Only blocks at the domain's edge can lose particles.
+      bool edge = false;
+      for (int d = 0; d < Dim; ++d) {
+        const double low = corner(b)[d], high = low + Tile<Dim, Shape>::side * h_;
+        edge = edge || low < walls_.low[d] || high > walls_.high[d];
+      }
+      if (edge)
+        for (std::size_t p = grid_.first_particle(b); p < grid_.last_particle(b); ++p)
+          for (int d = 0; d < Dim; ++d)
+            motion.outside = motion.outside || P_.position[d][p] < walls_.low[d] || P_.position[d][p] > walls_.high[d];
+    }
+    motion_[b] = motion;
+  }
+  double far = 0.0, fast = 0.0;
+  fastest_wave_ = 0.0;
+  for (std::size_t b = 0; b < grid_.occupied(); ++b) {
+    const BlockMotion& m = motion_[b];
+    // Maxima pass over a NaN; the kinetic energy does not.
+    if (!std::isfinite(m.kinetic))
+      fail(grid_.first_particle(b), grid_.last_particle(b), "has a velocity that is not finite");
+    if (m.far > 0.99 * h_)
+      fail(grid_.first_particle(b), grid_.last_particle(b),
+           "moved more than a cell in one step: the time step is too long");
+    far = std::max(far, m.far);
+    fast = std::max(fast, m.fast);
+    fastest_wave_ = std::max(fastest_wave_, m.wave);
+    report.kinetic_energy += m.kinetic;
+    leaving_ = leaving_ || m.outside;
+  }
+  report.maximum_speed = std::sqrt(fast);
+  drift_ += far * h1_;
+  add_time(seconds_.grid_to_particles, since);
+}
+
+template <int Dim, class Shape, bool Split, bool Flip>
+void ExplicitSolver<Dim, Shape, Split, Flip>::average() {
+  const auto since = Clock::now();
+#pragma omp parallel for schedule(static)
+  for (std::size_t b = 0; b < grid_.occupied(); ++b) {
+    AveragedNode* tile = averaged_tiles_.data() + b * tile_nodes;
+    std::fill(tile, tile + tile_nodes, AveragedNode{});
+    for (const Run& run : grid_.runs(b))
+      if (constants_[run.material].averaged)
+        scatter_volumetric<Dim, Shape>(P_, run.begin, run.end, corner(b), h1_, tile);
+  }
+#pragma omp parallel for schedule(static)
+  for (std::size_t a = 0; a < grid_.active(); ++a) {
+    AveragedNode node[block_nodes];
+    gather_tiles<Dim, Shape>(grid_, a, averaged_tiles_.data(), node);
+    for (int n = 0; n < block_nodes; ++n)
+      averaged_[a * block_nodes + n] = node[n].volume > 0.0 ? node[n].sum / node[n].volume : 0.0;
+  }
+  add_time(seconds_.volumetric, since);
+}
+
+template <int Dim, class Shape, bool Split, bool Flip>
+void ExplicitSolver<Dim, Shape, Split, Flip>::update_stresses(double dt) {
+  const auto since = Clock::now();
+#pragma omp parallel
+  {
+    std::vector<double> trace;
+#pragma omp for schedule(static)
+    for (std::size_t b = 0; b < grid_.occupied(); ++b) {
+      double mean[tile_nodes];
+      if (averaging_) load_tile<Dim, Shape>(grid_, b, averaged_.data(), mean);
+      double work = 0.0;
+      for (const Run& run : grid_.runs(b)) {
+        trace.resize(std::max(trace.size(), run.end - run.begin));
+        if (constants_[run.material].averaged)
+          gather_volumetric<Dim, Shape>(P_, run.begin, run.end, corner(b), h1_, mean, trace.data());
+        else
+          for (std::size_t p = run.begin; p < run.end; ++p) trace[p - run.begin] = trace_of(P_, p);
+        bool inverted = false;
+        for (std::size_t i = 0; i < run.end - run.begin; ++i) inverted |= !(std::fabs(trace[i]) < 1.0);
+        work +=
+            inverted ? std::nan("") : update_stress(constants_[run.material], P_, run.begin, run.end, trace.data(), dt);
+      }
+      dissipated_[b] = work;
+    }
+  }
+  for (std::size_t b = 0; b < grid_.occupied(); ++b) {
+    if (!std::isfinite(dissipated_[b]))
+      fail(grid_.first_particle(b), grid_.last_particle(b),
+           "is inverted: its volume changes beyond all measure in one step");
+    work_.plastic += dissipated_[b];
+  }
+  add_time(seconds_.stress, since);
+}
+
+template <int Dim, class Shape, bool Split, bool Flip>
+void ExplicitSolver<Dim, Shape, Split, Flip>::particles_to_grid() {
+  const auto since = Clock::now();
+  const bool pore = !P_.pore_pressure.empty();
+#pragma omp parallel for schedule(static)
+  for (std::size_t b = 0; b < grid_.occupied(); ++b) {
+    Vec4* tile = tiles_.data() + b * tile_nodes;
+    Vec4* force = Split ? forces_.data() + b * tile_nodes : nullptr;
+    std::fill(tile, tile + tile_nodes, Vec4{});
+    if constexpr (Split) std::fill(force, force + tile_nodes, Vec4{});
+    const std::size_t begin = grid_.first_particle(b), end = grid_.last_particle(b);
+    if (pore)
+      mpm::particles_to_grid<Shape, Split, true>(next_dt_, h1_, corner(b), P_, begin, end, tile, force);
+    else
+      mpm::particles_to_grid<Shape, Split, false>(next_dt_, h1_, corner(b), P_, begin, end, tile, force);
+  }
+  add_time(seconds_.particles_to_grid, since);
+}
+
+template <int Dim, class Shape, bool Split, bool Flip>
+double ExplicitSolver<Dim, Shape, Split, Flip>::unbalanced_force_ratio(const std::array<double, Dim>& body) const {
+  AlignedVector<Vec4> momentum(grid_.occupied() * tile_nodes, Vec4{}), force(grid_.occupied() * tile_nodes, Vec4{});
+  for (std::size_t b = 0; b < grid_.occupied(); ++b) {
+    const std::size_t begin = grid_.first_particle(b), end = grid_.last_particle(b);
+    Vec4 *m = momentum.data() + b * tile_nodes, *f = force.data() + b * tile_nodes;
+    if (P_.pore_pressure.empty())
+      mpm::particles_to_grid<Shape, true, false>(0.0, h1_, corner(b), P_, begin, end, m, f);
+    else
+      mpm::particles_to_grid<Shape, true, true>(0.0, h1_, corner(b), P_, begin, end, m, f);
+  }
+  double unbalanced = 0.0, weight = 0.0;
+  for (std::size_t a = 0; a < grid_.active(); ++a) {
+    Vec4 m[block_nodes], f[block_nodes];
+    gather_tiles<Dim, Shape>(grid_, a, momentum.data(), m);
+    gather_tiles<Dim, Shape>(grid_, a, force.data(), f);
+    const NodeContact* contact = ground_.of_block(a);
+    for (int n = 0; n < block_nodes; ++n) {
+      if (m[n][0] <= mass_cutoff_ || (contact && contact[n].count > 0)) continue;
+      bool held = false;
+      for (int d = 0, k = n; d < Dim; ++d, k /= Block<Dim>::cells) {
+        const int node = grid_.active_index(a)[d] * Block<Dim>::cells + k % Block<Dim>::cells;
+        for (int s = 0; s < 2; ++s) {
+          const auto& side = wall_nodes_.side[d][s];
+          held = held || (side.kind != WallKind::open && (s == 0 ? node <= side.node : node >= side.node));
+        }
+      }
+      if (held) continue;
+      for (int d = 0; d < Dim; ++d) {
+        const double g = m[n][0] * body[d], r = f[n][1 + d] + g;
+        unbalanced += r * r;
+        weight += g * g;
+      }
+    }
+  }
+  return weight > 0.0 ? std::sqrt(unbalanced / weight) : 0.0;
+}
+
+template <int Dim, class Shape, bool Split, bool Flip>
+void ExplicitSolver<Dim, Shape, Split, Flip>::fail(std::size_t begin, std::size_t end, const std::string& what) const {
+  // Names the particle that is not finite, else the fastest of the block.
+  std::size_t worst = begin;
+  double most = -1.0;
+  for (std::size_t p = begin; p < end; ++p) {
+    const double s = speed_squared(p);
+    if (!std::isfinite(s)) {
+      worst = p;
+      break;
+    }
+    if (s > most) {
+      most = s;
+      worst = p;
+    }
+  }
+  std::string place;
+  for (int d = 0; d < Dim; ++d) place += fmt::format("{}{:.6g}", d ? ", " : "", P_.position[d][worst]);
+  throw ComputationError(fmt::format("particle {} of material '{}' at ({}) m, speed {:.4g} m/s, {}", P_.identity[worst],
+                                     materials_[P_.material[worst]].name, place, std::sqrt(speed_squared(worst)),
+                                     what));
+}
+
+template <int Dim, class Shape>
+std::unique_ptr<Solver<Dim>> make_solver_of_shape(const SolverOptions& options, double cell_size,
+                                                  std::array<double, Dim> origin, Particles<Dim> particles,
+                                                  const std::vector<Material>& materials, const Terrain& terrain,
+                                                  const Walls<Dim>& walls) {
+  if (options.transfer == TransferName::flip)
+    return std::make_unique<ExplicitSolver<Dim, Shape, true, true>>(options, cell_size, origin, std::move(particles),
+                                                                    materials, terrain, walls);
+  if (options.local_damping > 0.0)
+    return std::make_unique<ExplicitSolver<Dim, Shape, true, false>>(options, cell_size, origin, std::move(particles),
+                                                                     materials, terrain, walls);
+  return std::make_unique<ExplicitSolver<Dim, Shape, false, false>>(options, cell_size, origin, std::move(particles),
+                                                                    materials, terrain, walls);
+}
+
+#define TAILRUN_MPM_INSTANTIATE(Dim, Shape)                                                                \
+  template std::unique_ptr<Solver<Dim>> make_solver_of_shape<Dim, Shape>(                                  \
+      const SolverOptions&, double, std::array<double, Dim>, Particles<Dim>, const std::vector<Material>&, \
+      const Terrain&, const Walls<Dim>&);
+
+}  // namespace tailrun::mpm

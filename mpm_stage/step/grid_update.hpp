@@ -1,0 +1,81 @@
+// The grid step of one node: forces and body acceleration, damping, walls and ground.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "mpm_stage/boundary/contact.hpp"
+#include "mpm_stage/boundary/contact_nodes.hpp"
+#include "mpm_stage/boundary/walls.hpp"
+
+namespace tailrun::mpm {
+
+// Sums over the nodes of one block (J; N s), added up in the order of the blocks afterwards.
+template <int Dim>
+struct GridSums {
+  double friction = 0.0, damping = 0.0, external = 0.0;
+  std::array<double, Dim> impulse{};
+};
+
+// Walls in numbers of nodes from the grid's origin.
+template <int Dim>
+struct WallNodes {
+  struct Side {
+    WallKind kind = WallKind::open;
+    int node = 0;
+    double friction = 0.0;
+  };
+  std::array<std::array<Side, 2>, Dim> side{};
+  bool any = false;
+};
+
+// Cundall's local damping: a force of `alpha` times the unbalanced one against the motion.
+template <int Dim>
+inline double apply_local_damping(double alpha, double dt, const std::array<double, Dim>& before,
+                                  std::array<double, Dim>& after) {
+  double lost = 0.0;
+  for (int d = 0; d < Dim; ++d) {
+    const double a = (after[d] - before[d]) / dt;
+    if (before[d] == 0.0) continue;
+    const double taken = std::copysign(alpha * std::fabs(a) * dt, before[d]);
+    const double v = after[d] - taken;
+    lost += 0.5 * (after[d] * after[d] - v * v);
+    after[d] = v;
+  }
+  return lost;
+}
+
+// Node planes at and beyond a wall: fixed holds them, slip holds the normal component, frictional is contact.
+template <int Dim>
+inline void apply_walls(const WallNodes<Dim>& walls, const std::array<int, Dim>& node, double mass,
+                        std::array<double, Dim>& v, GridSums<Dim>& sums) {
+  for (int d = 0; d < Dim; ++d)
+    for (int s = 0; s < 2; ++s) {
+      const auto& side = walls.side[d][s];
+      if (side.kind == WallKind::open || (s == 0 ? node[d] > side.node : node[d] < side.node)) continue;
+      if (side.kind == WallKind::fixed) {
+        v.fill(0.0);
+      } else if (side.kind == WallKind::slip) {
+        v[d] = 0.0;
+      } else {
+        std::array<double, Dim> n{};
+        n[d] = s == 0 ? 1.0 : -1.0;
+        sums.friction += mass * apply_contact<Dim>(v, n, side.friction, false);
+      }
+    }
+}
+
+template <int Dim>
+inline void apply_ground(const NodeContact& contact, double mass, std::array<double, Dim>& v, GridSums<Dim>& sums) {
+  // Two surfaces of a corner are taken in turn, twice, so that neither is left pushed through.
+  const int rounds = contact.count > 1 ? 2 : 1;
+  for (int r = 0; r < rounds; ++r)
+    for (int k = 0; k < contact.count; ++k) {
+      std::array<double, Dim> n{};
+      n[0] = contact.point[k].normal[0];
+      n[1] = contact.point[k].normal[1];
+      sums.friction += mass * apply_contact<Dim>(v, n, contact.point[k].friction, contact.adhere);
+    }
+}
+
+}  // namespace tailrun::mpm

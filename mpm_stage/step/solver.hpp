@@ -1,0 +1,85 @@
+// One explicit step of the material point method, as the run loop sees it. The implementation (explicit_solver.hpp) is
+// compiled for each combination of dimension, shape function and transfer; the scene picks one at set-up.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mpm_stage/boundary/terrain.hpp"
+#include "mpm_stage/boundary/walls.hpp"
+#include "mpm_stage/grid/block_grid.hpp"
+#include "mpm_stage/material/material.hpp"
+#include "mpm_stage/scene/particles.hpp"
+
+namespace tailrun::mpm {
+
+enum class ShapeName { linear, quadratic, cubic, gimp };
+enum class TransferName { apic, flip };
+
+struct SolverOptions {
+  ShapeName shape = ShapeName::quadratic;
+  TransferName transfer = TransferName::apic;
+  double flip_share = 0.99;  // 1, of FLIP in the FLIP/PIC blend
+  bool volumetric_average = true;
+  double courant = 0.5;        // 1, dt = courant h / max(c + |v|)
+  double maximum_step = 1e30;  // s
+  double contact_reach = 0.5;  // cells: nodes up to this distance above the ground belong to it
+  double local_damping = 0.0;  // 1, Cundall's
+  double mass_cutoff = 1e-10;  // 1, relative to the mean particle mass
+};
+
+// Work done since the start, J (per metre in plane strain), each counted as energy taken from the particles except
+// `external`, which was given to them.
+struct WorkDone {
+  double plastic = 0.0, friction = 0.0, damping = 0.0, external = 0.0, removed = 0.0;
+};
+
+// Wall-clock seconds by phase since the start.
+struct PhaseSeconds {
+  double grid = 0.0, grid_to_particles = 0.0, volumetric = 0.0, stress = 0.0, particles_to_grid = 0.0, sort = 0.0;
+};
+
+struct StepReport {
+  double dt = 0.0;              // s, of the step just made
+  double next_dt = 0.0;         // s
+  double kinetic_energy = 0.0;  // J, sum of m v^2 / 2
+  double maximum_speed = 0.0;   // m/s
+  bool sorted = false;
+};
+
+template <int Dim>
+class Solver {
+ public:
+  virtual ~Solver() = default;
+
+  // Sorts the particles and puts them on the grid; the first step will be at most `limit` (s) long.
+  virtual void start(double limit) = 0;
+  // Makes one step with body acceleration `body` (gravity, m/s2) and `inertial` (minus the base acceleration); the one
+  // after it will be at most `limit` long. Throws ComputationError with the particle, its position, material and the
+  // cause when a value is not finite, a particle inverts or moves more than a cell.
+  virtual StepReport step(const std::array<double, Dim>& body, const std::array<double, Dim>& inertial,
+                          double limit) = 0;
+
+  virtual double next_dt() const = 0;  // s, of the step to be made
+  virtual Particles<Dim>& particles() = 0;
+  virtual const BlockGrid<Dim>& grid() const = 0;
+  virtual const WorkDone& work() const = 0;
+  virtual const PhaseSeconds& seconds() const = 0;
+  virtual double elastic_energy() const = 0;  // J
+  virtual double unbalanced_force_ratio(const std::array<double, Dim>& body) const = 0;
+  virtual std::array<double, Dim> boundary_impulse() const = 0;  // N s since the start, on the particles
+  virtual std::size_t grid_bytes() const = 0;
+  virtual std::vector<std::int32_t> removed() const = 0;  // identities of particles that left
+  virtual long sorts() const = 0;
+};
+
+// The particles are moved into the solver. `materials` are in the order of the particles' material numbers; `origin` is
+// a node (m). `terrain` must outlive the solver.
+template <int Dim>
+std::unique_ptr<Solver<Dim>> make_solver(const SolverOptions& options, double cell_size, std::array<double, Dim> origin,
+                                         Particles<Dim> particles, const std::vector<Material>& materials,
+                                         const Terrain& terrain, const Walls<Dim>& walls);
+
+}  // namespace tailrun::mpm
