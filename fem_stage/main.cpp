@@ -1,0 +1,141 @@
+// fem_stage: shaking and liquefaction triggering of a dam, by finite elements, until the hand-over to the MPM stage.
+//
+//   div(sigma' - p I) + rho g = rho a                    momentum of the mixture
+//   div(v) + (n / K_f) dp/dt + div(w) = 0, w = k'(-grad p + rho_f g)   mass of the water (u-p form, Zienkiewicz &
+//   Shiomi 1984)
+//
+// on stabilised single-point quadrilaterals (SSPquadUP), with PM4Sand, a compliant base and free-field columns at the
+// sides.
+//
+//   fem_stage run fem.json -o out/fem                  mesh, geostatic and shake, one after the other
+//   fem_stage mesh fem.json -o out/fem --size coarse   geometry -> out/fem/mesh.msh
+//   fem_stage geostatic fem.json --mesh out/fem/mesh.msh -o out/fem   -> geostatic.h5
+//   fem_stage shake fem.json --geostatic out/fem/geostatic.h5 -o out/fem  -> snapshots, histories, summary.json
+//   fem_stage element test.json -o out.csv             one material point under a laboratory test's loading
+//   fem_stage calibrate target.json -o out/calibration parameters from a target strength
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+
+#include "common/application.hpp"
+#include "common/error.hpp"
+#include "fem_stage/mesh/gmsh_mesh.hpp"
+#include "fem_stage/output/state_file.hpp"
+#include "fem_stage/output/summary.hpp"
+#include "fem_stage/stage/geostatic.hpp"
+#include "fem_stage/stage/shake.hpp"
+
+using namespace tailrun;
+using namespace tailrun::fem;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Arguments {
+  std::string case_file, size, folder = ".", mesh, geostatic;
+};
+
+fs::path mesh_path(const Arguments& arguments) {
+  return arguments.mesh.empty() ? fs::path(arguments.folder) / "mesh.msh" : fs::path(arguments.mesh);
+}
+fs::path geostatic_path(const Arguments& arguments) {
+  return arguments.geostatic.empty() ? fs::path(arguments.folder) / "geostatic.h5" : fs::path(arguments.geostatic);
+}
+
+// Geometry -> mesh.msh, or a copy of the case's own mesh file, with a report on its quality.
+void make_mesh(const Arguments& arguments) {
+  const FemCase options = read_fem_case(arguments.case_file, arguments.size);
+  const fs::path output = fs::path(arguments.folder) / "mesh.msh";
+  fs::create_directories(arguments.folder);
+  Mesh mesh;
+  if (!options.mesh.geometry.empty()) {
+    mesh = mesh_geometry(options.mesh.geometry, options.mesh.parameters, output);
+  } else {
+    mesh = read_gmsh(options.mesh.file);
+    const fs::path temporary = output.string() + ".part";
+    fs::copy_file(options.mesh.file, temporary, fs::copy_options::overwrite_existing);
+    fs::rename(temporary, output);
+  }
+  const auto summary = mesh_summary(mesh);
+  write_text_file((fs::path(arguments.folder) / "mesh.json").string(), summary.dump(2) + "\n");
+  spdlog::info("mesh: {} nodes, {} quadrilaterals, smallest scaled Jacobian {:.3f}", mesh.nodes(), mesh.elements(),
+               summary["min_scaled_jacobian"].get<double>());
+}
+
+// Mesh -> geostatic.h5: the dam at rest before the earthquake.
+void make_geostatic(const Arguments& arguments) {
+  FemCase options = read_fem_case(arguments.case_file, arguments.size);
+  echo_options(arguments.case_file, options.echo);
+  options.provenance.add_file(mesh_path(arguments));
+  const Model model = build_model(options, mesh_path(arguments));
+  MaterialPoints points = make_material_points(model);
+  State state;
+  const GeostaticReport report = run_geostatic(model, points, state);
+  write_state(geostatic_path(arguments), model, state, points, 0.0, 0.0, 0.0);
+  write_text_file((fs::path(arguments.folder) / "geostatic.json").string(), geostatic_summary(report).dump(2) + "\n");
+  spdlog::info(
+      "geostatic: residual {:.1e} of the weight (elastic {:.1e}, after the plastic switch {:.1e}), settled {:.1f} mm, "
+      "largest tension {:.1f} kPa, {:.1f} s",
+      report.final_residual, report.elastic_residual, report.switch_residual, 1e3 * report.settlement,
+      1e-3 * report.largest_tension, report.seconds);
+}
+
+// geostatic.h5 and the motion -> snapshots, histories, summary.json.
+void make_shake(const Arguments& arguments, bool echo) {
+  FemCase options = read_fem_case(arguments.case_file, arguments.size);
+  const Motion motion = case_motion(options);
+  if (echo) echo_options(arguments.case_file, options.echo);
+  options.provenance.add_file(mesh_path(arguments));
+  options.provenance.add_file(options.shake.motion);
+  options.provenance.add_file(geostatic_path(arguments));
+  const Model model = build_model(options, mesh_path(arguments));
+  MaterialPoints points = make_material_points(model);
+  State state;
+  read_state(geostatic_path(arguments), model, state, points);
+  const ShakeReport report = run_shake(model, points, state, motion, arguments.folder);
+  const auto summary = shake_summary(model, motion, report);
+  write_text_file((fs::path(arguments.folder) / "summary.json").string(), summary.dump(2) + "\n");
+  if (!report.failure.empty())
+    throw ComputationError(report.failure + "; the last good state is " +
+                           (fs::path(arguments.folder) / report.snapshots.back()).string());
+  spdlog::info(
+      "shake: {:.2f} s, largest displacement {:.2f} m, liquefied depth {:.1f} m, smallest scaled Jacobian {:.2f}, "
+      "energy balance {:+.1e}, {:.0f} s",
+      report.end_time, report.quality.back().largest_displacement, report.quality.back().liquefied_depth,
+      summary["min_scaled_jacobian"].get<double>(), summary["energy_J"]["residual_of_largest"].get<double>(),
+      report.wall_seconds);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Finite element stage: shaking and liquefaction triggering until the hand-over", "fem_stage");
+  add_common_options(app);
+  app.require_subcommand(1);
+  Arguments arguments;
+  const auto add_stage = [&](const char* name, const char* what) {
+    CLI::App* command = app.add_subcommand(name, what);
+    command->add_option("case", arguments.case_file, "fem.json")->required();
+    command->add_option("-o,--output", arguments.folder, "Folder of the results")->capture_default_str();
+    command->add_option("--size", arguments.size, "Entry of /mesh/sizes in the case (coarse, default, fine)");
+    return command;
+  };
+  add_stage("mesh", "Geometry to mesh.msh")->callback([&] { make_mesh(arguments); });
+
+  CLI::App* geostatic = add_stage("geostatic", "Gravity and water to geostatic.h5");
+  geostatic->add_option("--mesh", arguments.mesh, "Mesh file (default: mesh.msh in the results' folder)");
+  geostatic->callback([&] { make_geostatic(arguments); });
+
+  CLI::App* shake = add_stage("shake", "Earthquake from geostatic.h5 to snapshots");
+  shake->add_option("--mesh", arguments.mesh, "Mesh file (default: mesh.msh in the results' folder)");
+  shake->add_option("--geostatic", arguments.geostatic,
+                    "Geostatic state (default: geostatic.h5 in the results' folder)");
+  shake->callback([&] { make_shake(arguments, true); });
+
+  add_stage("run", "mesh, geostatic and shake")->callback([&] {
+    make_mesh(arguments);
+    make_geostatic(arguments);
+    make_shake(arguments, false);
+  });
+  return run_application(app, argc, argv);
+}

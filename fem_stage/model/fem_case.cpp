@@ -1,0 +1,186 @@
+#include "fem_stage/model/fem_case.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/case_file.hpp"
+#include "common/error.hpp"
+
+namespace tailrun::fem {
+namespace {
+
+std::vector<std::string> keys_of(const auto& map) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : map) keys.push_back(key);
+  return keys;
+}
+
+MeshOptions read_mesh(const CaseNode& node, const std::string& size) {
+  MeshOptions mesh;
+  if (node.has("geometry") == node.has("file"))
+    node.fail("", "give either 'geometry' (a .geo file) or 'file' (a .msh file)");
+  if (node.has("geometry")) mesh.geometry = node.file("geometry");
+  if (node.has("file")) mesh.file = node.file("file");
+  mesh.snap_to_phreatic_line = node.number_or("snap_to_phreatic_line", "m", Range::non_negative(), 0.0);
+  std::map<std::string, CaseNode> sizes;
+  for (const auto& [name, parameters] : node.object_or_empty("sizes").members()) {
+    sizes.emplace(name, parameters);
+    for (const auto& key : parameters.keys()) {
+      const double value = parameters.number(key, "1", Range::any());
+      if (name == size || (size.empty() && name == "default")) mesh.parameters[key] = value;
+    }
+  }
+  if (!size.empty() && size != "default" && !sizes.contains(size))
+    throw InputError(fmt::format("--size {}: {} has no such entry in /mesh/sizes.{} It has: {}", size, "the case",
+                                 did_you_mean(size, keys_of(sizes)), joined(keys_of(sizes))));
+  return mesh;
+}
+
+BoundaryOptions read_boundaries(const CaseNode& node) {
+  BoundaryOptions out;
+  const CaseNode base = node.object("base");
+  out.base_line = base.text("line");
+  out.base = base.choice("type", {"lysmer_dashpot", "rigid"}) == "rigid" ? BaseKind::rigid : BaseKind::lysmer_dashpot;
+  if (out.base == BaseKind::lysmer_dashpot) {
+    out.rock_density = base.number("rock_density", "kg/m3", Range::positive());
+    out.rock_shear_velocity = base.number("rock_shear_velocity", "m/s", Range::positive());
+    out.base_tied = base.boolean_or("tied", false);
+  }
+  out.tied_column_regions = node.texts_or("tied_column_regions", {});
+  out.periodic_lines = node.texts_or("periodic_lines", {});
+  out.roller_lines = node.texts_or("roller_lines", {});
+  out.geostatic_roller_lines = node.texts_or("geostatic_roller_lines", {});
+  return out;
+}
+
+GeostaticOptions read_geostatic(const CaseNode& node) {
+  GeostaticOptions out;
+  out.K0 = node.number_or("K0", "1", Range::open(0.0, 1.0), out.K0);
+  out.isotropic_seepage = node.choice_or("seepage", {"isotropic", "by_region"}, "isotropic") == "isotropic";
+  out.settle_time = node.number_or("settle_time", "s", Range::non_negative(), out.settle_time);
+  out.settle_step = node.number_or("settle_step", "s", Range::positive(), out.settle_step);
+  out.tolerance = node.number_or("tolerance", "1", Range::positive(), out.tolerance);
+  return out;
+}
+
+ShakeOptions read_shake(const CaseNode& node) {
+  ShakeOptions out;
+  out.motion = node.file("motion");
+  out.peak_acceleration = node.number_or("peak_acceleration", "m/s2", Range::non_negative(), 0.0);
+  out.duration = node.number("duration", "s", Range::positive());
+  out.time_step = node.number_or("time_step", "s", Range::open(0.0, 1.0), out.time_step);
+  const CaseNode newmark = node.object_or_empty("newmark");
+  out.gamma = newmark.number_or("gamma", "1", Range::between(0.5, 2.0), out.gamma);
+  out.beta = newmark.number_or("beta", "1", Range::between(0.25, 2.0), 0.25 * (out.gamma + 0.5) * (out.gamma + 0.5));
+  out.theta = newmark.number_or("theta", "1", Range::between(0.5, 2.0), out.gamma);
+  if (const auto damping = node.object_if("rayleigh_damping")) {
+    out.damping_ratio = damping->number("ratio", "1", Range::between(0.0, 0.5));
+    out.damping_frequency = damping->number("frequency", "Hz", Range::positive());
+  }
+  const CaseNode solver = node.object_or_empty("solver");
+  out.tolerance = solver.number_or("tolerance", "1", Range::open(0.0, 0.1), out.tolerance);
+  out.max_iterations = static_cast<int>(solver.integer_or("max_iterations", 2, 1000, out.max_iterations));
+  out.max_halvings = static_cast<int>(solver.integer_or("max_halvings", 0, 20, out.max_halvings));
+  out.refactor_above = static_cast<int>(solver.integer_or("refactor_above", 0, 1000, out.refactor_above));
+  out.acceleration_depth = static_cast<int>(solver.integer_or("acceleration_depth", 0, 50, out.acceleration_depth));
+  out.large_displacement = node.boolean_or("large_displacement", false);
+  return out;
+}
+
+std::vector<NamedPoint> read_points(const CaseNode& node, const std::string& key) {
+  std::vector<NamedPoint> points;
+  const CaseNode parent = node.object_or_empty(key);
+  for (const auto& name : parent.keys()) {
+    const auto xy = parent.numbers(name, "m", Range::any(), 2);
+    points.push_back({name, xy[0], xy[1]});
+  }
+  return points;
+}
+
+OutputOptions read_output(const CaseNode& node) {
+  OutputOptions out;
+  out.snapshots = node.numbers_or("snapshots", "s", Range::non_negative(), {});
+  std::sort(out.snapshots.begin(), out.snapshots.end());
+  out.snapshot_interval = node.number_or("snapshot_interval", "s", Range::non_negative(), 0.0);
+  out.history_interval = node.number_or("history_interval", "s", Range::positive(), out.history_interval);
+  out.points = read_points(node, "points");
+  out.elements = read_points(node, "elements");
+  if (const auto liquefaction = node.object_if("liquefaction")) {
+    out.liquefaction_region = liquefaction->text("region");
+    const auto window = liquefaction->numbers("window", "m", Range::any(), 2);
+    out.liquefaction_window = {window[0], window[1]};
+    out.liquefaction_threshold = liquefaction->number_or("threshold", "1", Range::open(0.0, 2.0), 0.7);
+  }
+  return out;
+}
+
+}  // namespace
+
+FemCase read_fem_case(const std::filesystem::path& path, const std::string& size) {
+  const CaseFile file(path);
+  const CaseNode root = file.root();
+  FemCase out;
+  root.text_or("title", "");
+  out.mesh = read_mesh(root.object("mesh"), size);
+  out.gravity = root.number_or("gravity", "m/s2", Range::non_negative(), out.gravity);
+  const CaseNode fluid = root.object_or_empty("fluid");
+  out.fluid_density = fluid.number_or("density", "kg/m3", Range::positive(), out.fluid_density);
+  out.fluid_bulk_modulus = fluid.number_or("bulk_modulus", "Pa", Range::positive(), out.fluid_bulk_modulus);
+  if (root.has("phreatic_line")) {
+    out.phreatic_line = root.table("phreatic_line", "m", 2);
+    for (std::size_t i = 2; i + 1 < out.phreatic_line.size(); i += 2)
+      if (out.phreatic_line[i] <= out.phreatic_line[i - 2])
+        root.fail("phreatic_line", fmt::format("row {}: x must ascend from row to row", i / 2));
+  }
+  const CaseNode element = root.object_or_empty("element");
+  out.pressure_stabilisation =
+      element.number_or("pressure_stabilisation", "1", Range::non_negative(), out.pressure_stabilisation);
+  out.pressure_points = static_cast<int>(element.integer_or("pressure_quadrature", 1, 2, out.pressure_points));
+  out.hourglass_shape =
+      element.choice_or("hourglass_shape", {"constant_jacobian", "opensees"}, "constant_jacobian") == "opensees"
+          ? HourglassShape::opensees
+          : HourglassShape::constant_jacobian;
+  out.hourglass_current_modulus =
+      element.choice_or("hourglass_modulus", {"initial", "current"}, "initial") == "current";
+
+  std::vector<std::string> material_names;
+  for (const auto& [name, node] : root.object("materials").members()) {
+    material_names.push_back(name);
+    out.materials.push_back(read_material(node, name));
+  }
+  for (const auto& [name, node] : root.object("regions").members()) {
+    RegionOptions region;
+    region.material = static_cast<int>(
+        std::find(material_names.begin(), material_names.end(), node.choice("material", material_names)) -
+        material_names.begin());
+    const auto permeability = node.numbers("permeability", "m/s", Range::non_negative());
+    if (permeability.empty() || permeability.size() > 2)
+      node.fail("permeability", "one value [m/s], or two (along x, along y), are required");
+    region.permeability = {permeability.front(), permeability.back()};
+    region.thickness = node.number_or("thickness", "m", Range::positive(), 1.0);
+    out.regions.emplace(name, region);
+  }
+  out.boundaries = read_boundaries(root.object("boundaries"));
+  out.geostatic = read_geostatic(root.object_or_empty("geostatic"));
+  out.shake = read_shake(root.object("shake"));
+  out.output = read_output(root.object_or_empty("output"));
+  file.finish();
+  out.echo = file.echo();
+  out.provenance.program = "fem_stage";
+  out.provenance.add_text(path, file.text());
+  return out;
+}
+
+double phreatic_elevation(const std::vector<double>& line, double x) {
+  const std::size_t rows = line.size() / 2;
+  if (x <= line[0]) return line[1];
+  for (std::size_t i = 1; i < rows; ++i) {
+    if (x > line[2 * i]) continue;
+    const double s = (x - line[2 * i - 2]) / (line[2 * i] - line[2 * i - 2]);
+    return line[2 * i - 1] + s * (line[2 * i + 1] - line[2 * i - 1]);
+  }
+  return line[2 * rows - 1];
+}
+
+}  // namespace tailrun::fem

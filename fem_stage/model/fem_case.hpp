@@ -1,0 +1,107 @@
+// fem.json as plain data. docs/user_guide.md lists every key; each is read, checked and defaulted in fem_case.cpp.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/provenance.hpp"
+#include "fem_stage/element/sspquadup.hpp"
+#include "fem_stage/material/material_points.hpp"
+
+namespace tailrun::fem {
+
+struct RegionOptions {
+  int material = 0;                      // index into FemCase::materials
+  std::array<double, 2> permeability{};  // m/s, hydraulic conductivity along x, y
+  double thickness = 1.0;                // m
+};
+
+struct MeshOptions {
+  std::filesystem::path geometry;            // .geo, or
+  std::filesystem::path file;                // .msh
+  std::map<std::string, double> parameters;  // ONELAB numbers for the geometry
+  double snap_to_phreatic_line = 0.0;        // m: nodes nearer than this to the line are moved onto it; 0 = off
+};
+
+enum class BaseKind { lysmer_dashpot, rigid };
+
+struct BoundaryOptions {
+  std::string base_line;
+  BaseKind base = BaseKind::lysmer_dashpot;
+  double rock_density = 0.0, rock_shear_velocity = 0.0;  // kg/m3, m/s
+  bool base_tied = false;                                // one horizontal freedom for the whole base
+  std::vector<std::string> tied_column_regions;          // free-field columns: nodes of equal height move together
+  std::vector<std::string> periodic_lines;               // nodes of equal height on these lines are tied, p included
+  std::vector<std::string> roller_lines;                 // u_x = 0 throughout
+  std::vector<std::string> geostatic_roller_lines;       // u_x = 0 in the geostatic stage, reactions kept afterwards
+};
+
+struct GeostaticOptions {
+  double K0 = 0.5;                // at-rest ratio of the elastic stage: Poisson ratio K0 / (1 + K0)
+  bool isotropic_seepage = true;  // one permeability everywhere for the initial water pressure
+  double settle_time = 0.0;       // s of pseudo-time after the switch to the plastic models
+  double settle_step = 0.1;       // s
+  double tolerance = 1e-3;        // largest residual force that is accepted at the end, of the weight
+};
+
+struct ShakeOptions {
+  std::filesystem::path motion;
+  double peak_acceleration = 0.0;  // m/s2, 0 = as recorded
+  double duration = 0.0;           // s
+  double time_step = 0.005;        // s
+  double gamma = 0.6, beta = 0.3025, theta = 0.6;
+  double damping_ratio = 0.0, damping_frequency = 0.0;  // stiffness proportional: a1 = 2 zeta / (2 pi f)
+  double tolerance = 1e-5;                              // residual force, of the weight
+  int max_iterations = 30;
+  int max_halvings = 6;
+  int refactor_above = 6;      // iterations of a step after which the matrix is made anew
+  int acceleration_depth = 6;  // corrections that Anderson acceleration combines; 0 = off
+  bool large_displacement = false;
+};
+
+struct NamedPoint {
+  std::string name;
+  double x, y;  // m
+};
+
+struct OutputOptions {
+  std::vector<double> snapshots;   // s
+  double snapshot_interval = 0.0;  // s, 0 = only the list
+  double history_interval = 0.02;  // s
+  std::vector<NamedPoint> points, elements;
+  std::string liquefaction_region;              // where liquefied depth and mean r_u are measured; empty = off
+  std::array<double, 2> liquefaction_window{};  // m, from x to x
+  double liquefaction_threshold = 0.7;          // r_u
+};
+
+struct FemCase {
+  Provenance provenance;
+  std::vector<std::string> echo;
+  MeshOptions mesh;
+  double gravity = 9.81;                 // m/s2
+  double fluid_density = 1000.0;         // kg/m3
+  double fluid_bulk_modulus = 2.2e9;     // Pa
+  std::vector<double> phreatic_line;     // m, (k, 2), ascending x; empty = dry
+  double pressure_stabilisation = 0.25;  // alpha = this h^2 / (K + 4 G / 3)
+  int pressure_points = 2;
+  HourglassShape hourglass_shape = HourglassShape::constant_jacobian;
+  bool hourglass_current_modulus = false;
+  std::vector<MaterialDefinition> materials;
+  std::map<std::string, RegionOptions> regions;
+  BoundaryOptions boundaries;
+  GeostaticOptions geostatic;
+  ShakeOptions shake;
+  OutputOptions output;
+};
+
+// Throws InputError. `size` chooses from "mesh"/"sizes"; empty takes "default" when there is one.
+FemCase read_fem_case(const std::filesystem::path& path, const std::string& size);
+
+// Elevation (m) of the phreatic line at x; the end values outside its range. `line` (k, 2).
+double phreatic_elevation(const std::vector<double>& line, double x);
+
+}  // namespace tailrun::fem

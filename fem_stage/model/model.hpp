@@ -1,0 +1,69 @@
+// The discretised problem: mesh, elements, soil and water properties, freedoms, loads that never change. Built once
+// from a FemCase; the State is what evolves.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fem_stage/boundary/freedoms.hpp"
+#include "fem_stage/element/sspquadup.hpp"
+#include "fem_stage/material/material_points.hpp"
+#include "fem_stage/mesh/mesh.hpp"
+#include "fem_stage/model/fem_case.hpp"
+
+namespace tailrun::fem {
+
+struct Model {
+  const FemCase* options = nullptr;
+  Mesh mesh;
+  SspQuadUp elements;             // undeformed
+  std::vector<double> thickness;  // m, (M)
+  std::vector<double> density;    // kg/m3, (M), total
+  std::vector<double> porosity;   // 1, (M)
+  std::vector<double> bulk_initial,
+      shear_initial;  // Pa, (M): elastic moduli at the reference pressure (G0 p_A for PM4)
+  std::vector<double> permeability_x, permeability_y;  // m4/(N s), (M): k / (rho_f g)
+  std::vector<double> stabilisation;                   // m4/N, (M): alpha of the pressure stabilisation
+  std::vector<double> nodal_mass;                      // kg, (N), lumped
+  std::vector<char> pressure_fixed;                    // (N): p = 0 held (on and above the phreatic line)
+  std::vector<double> base_area;                       // m2, per node of base_nodes: tributary area
+  std::vector<std::int64_t> base_nodes;
+  double weight = 0.0;  // N, 2-norm of the nodal weights: scale of forces
+
+  // (node -> elements) in compressed rows, so that nodal sums are gathered in a fixed order by any thread
+  std::vector<int> adjacency_start, adjacency;  // entries are 4 * element + local node
+
+  std::size_t nodes() const { return mesh.nodes(); }
+  std::size_t count() const { return mesh.elements(); }
+};
+
+// What evolves. Displacement counts from the start of shaking; velocities and accelerations are absolute for a
+// compliant base and relative to the base for a rigid one.
+struct State {
+  double time = 0.0;
+  std::vector<double> displacement, velocity, acceleration;  // m, m/s, m/s2, (N, 2)
+  std::vector<double> pressure, pressure_rate;               // Pa, Pa/s, (N)
+  std::vector<double> stress;                                // Pa, (M, 4), effective, committed
+  std::vector<double> hourglass_force;                       // N, (M, 2), committed: G F q summed over increments
+  std::vector<double> held_force;                            // N, (N, 2): reactions of released freedoms, constant
+  // The geostatic state that results refer to.
+  std::vector<double> initial_stress;           // Pa, (M, 4)
+  std::vector<double> initial_pressure;         // Pa, (N)
+  std::vector<double> max_pore_pressure_ratio;  // 1, (M)
+};
+
+// Reads or makes the mesh and everything that depends on it. `mesh_file` overrides the case's. Throws InputError:
+// regions of the mesh that the case does not describe (and the other way round), lines that do not exist.
+Model build_model(const FemCase& options, const std::filesystem::path& mesh_file);
+
+// Freedoms of the geostatic stage (base fixed, sides on rollers) and of shaking (base and sides released).
+Freedoms geostatic_freedoms(const Model& model);
+Freedoms shaking_freedoms(const Model& model);
+
+MaterialPoints make_material_points(const Model& model);
+
+// Element equation numbers (M, 12): u_x, u_y, p node by node.
+std::vector<int> element_equations(const Mesh& mesh, const Freedoms::Equations& equations);
+
+}  // namespace tailrun::fem

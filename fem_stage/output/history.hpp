@@ -1,0 +1,64 @@
+// Histories at named points and elements, and the series by which the transfer time is chosen: liquefied depth, pore
+// pressure, mesh quality. Comma-separated, SI, one row per interval; written beside its final name and renamed at the
+// end.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "fem_stage/model/model.hpp"
+#include "fem_stage/solver/newmark.hpp"
+
+namespace tailrun::fem {
+
+// Motion of a rigid base, added to the results (zero for a compliant one).
+struct BaseMotion {
+  double acceleration = 0.0, velocity = 0.0, displacement = 0.0;
+};
+
+class CsvFile {
+ public:
+  CsvFile(const std::filesystem::path& path, const std::vector<std::string>& columns);
+  void row(const std::vector<double>& values);
+  void finish();
+
+ private:
+  std::filesystem::path path_;
+  std::ofstream stream_;
+};
+
+class History {
+ public:
+  History(const Model& model, const std::filesystem::path& folder);
+  void record(const State& state, const BaseMotion& base);
+  void finish() { file_.finish(); }
+
+ private:
+  const Model& model_;
+  std::vector<std::size_t> nodes_, elements_;
+  CsvFile file_;
+};
+
+struct QualityRow {
+  double time, largest_displacement, smallest_jacobian, liquefied_depth, mean_ratio, liquefied_share;
+  int inverted;
+};
+
+class QualitySeries {
+ public:
+  QualitySeries(const Model& model, const std::filesystem::path& folder);
+  void record(const State& state, const SolverCounts& counts, double wall_seconds);
+  void finish() { file_.finish(); }
+  const std::vector<QualityRow>& rows() const { return rows_; }
+
+ private:
+  const Model& model_;
+  std::vector<std::size_t> window_;  // elements of the liquefaction region inside the window
+  double window_width_ = 0.0;        // m
+  std::vector<QualityRow> rows_;
+  CsvFile file_;
+};
+
+}  // namespace tailrun::fem

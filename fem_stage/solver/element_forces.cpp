@@ -1,0 +1,246 @@
+#include "fem_stage/solver/element_forces.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace tailrun::fem {
+namespace {
+
+// Tensor components (xx, yy, tensor shear) turned by the angle `r` (rad).
+struct Plane {
+  double xx, yy, xy;
+};
+Plane turned(Plane t, double r) {
+  const double c = std::cos(2.0 * r), s = std::sin(2.0 * r), mean = 0.5 * (t.xx + t.yy), half = 0.5 * (t.xx - t.yy);
+  return {mean + half * c - t.xy * s, mean - half * c + t.xy * s, half * s + t.xy * c};
+}
+
+}  // namespace
+
+ElementForces::ElementForces(const Model& model, double damping, bool large_displacement)
+    : model_(model), damping_(damping), large_(large_displacement) {
+  const std::size_t count = model.count();
+  bulk_.resize(count);
+  shear_.resize(count);
+  hourglass_committed_.assign(2 * count, 0.0);
+  hourglass_trial_.assign(2 * count, 0.0);
+  strain_.assign(3 * count, 0.0);
+  stress_.assign(4 * count, 0.0);
+  global_stress_.assign(4 * count, 0.0);
+  element_forces_.assign(12 * count, 0.0);
+  if (large_) {
+    rotation_.assign(count, 0.0);
+    material_strain_.assign(3 * count, 0.0);
+    moved_ = model.elements;
+  }
+}
+
+double ElementForces::hourglass_modulus(std::size_t e) const {
+  return model_.options->hourglass_current_modulus ? shear_[e] : model_.shear_initial[e];
+}
+
+UpdateReport ElementForces::evaluate(MaterialPoints& points, std::span<const double> increment,
+                                     std::span<const double> velocity, std::span<const double> pressure,
+                                     std::span<const double> pressure_rate, std::span<double> residual) {
+  const std::size_t count = model_.count(), nodes = model_.nodes();
+  const SspQuadUp& el = elements();
+  const auto* quads = model_.mesh.quads.data();
+#pragma omp parallel for schedule(static)
+  for (std::size_t e = 0; e < count; ++e) {
+    double exx = 0.0, eyy = 0.0, gxy = 0.0, qx = 0.0, qy = 0.0;
+    for (std::size_t a = 0; a < 4; ++a) {
+      const auto node = static_cast<std::size_t>(quads[4 * e + a]);
+      const double ux = increment[2 * node], uy = increment[2 * node + 1], nx = el.dndx[4 * e + a],
+                   ny = el.dndy[4 * e + a];
+      exx += nx * ux;
+      eyy += ny * uy;
+      gxy += ny * ux + nx * uy;
+      qx += el.gamma[4 * e + a] * ux;
+      qy += el.gamma[4 * e + a] * uy;
+    }
+    strain_[3 * e] = exx;
+    strain_[3 * e + 1] = eyy;
+    strain_[3 * e + 2] = gxy;
+    if (large_) {
+      const Plane local = turned({exx, eyy, 0.5 * gxy}, -rotation_[e]);
+      material_strain_[3 * e] = local.xx;
+      material_strain_[3 * e + 1] = local.yy;
+      material_strain_[3 * e + 2] = 2.0 * local.xy;
+    }
+    const double g = hourglass_modulus(e);
+    hourglass_trial_[2 * e] =
+        hourglass_committed_[2 * e] + g * (el.hourglass[3 * e] * qx + el.hourglass[3 * e + 1] * qy);
+    hourglass_trial_[2 * e + 1] =
+        hourglass_committed_[2 * e + 1] + g * (el.hourglass[3 * e + 1] * qx + el.hourglass[3 * e + 2] * qy);
+  }
+
+  const auto start = std::chrono::steady_clock::now();
+  UpdateReport report = points.update(large_ ? material_strain_ : strain_, stress_);
+  material_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  const double fluid_density = model_.options->fluid_density, gravity = model_.options->gravity;
+  const double compressibility = 1.0 / model_.options->fluid_bulk_modulus;
+#pragma omp parallel for schedule(static)
+  for (std::size_t e = 0; e < count; ++e) {
+    double sxx = stress_[4 * e], syy = stress_[4 * e + 1], sxy = stress_[4 * e + 3];
+    if (large_) {
+      const Plane turned_stress = turned({sxx, syy, sxy}, rotation_[e]);
+      sxx = turned_stress.xx;
+      syy = turned_stress.yy;
+      sxy = turned_stress.xy;
+    }
+    global_stress_[4 * e] = sxx;
+    global_stress_[4 * e + 1] = syy;
+    global_stress_[4 * e + 2] = stress_[4 * e + 2];
+    global_stress_[4 * e + 3] = sxy;
+
+    double vxx = 0.0, vyy = 0.0, vxy = 0.0, qx = 0.0, qy = 0.0, mean_pressure = 0.0;
+    double p[4], rate[4];
+    for (std::size_t a = 0; a < 4; ++a) {
+      const auto node = static_cast<std::size_t>(quads[4 * e + a]);
+      const double vx = velocity[2 * node], vy = velocity[2 * node + 1], nx = el.dndx[4 * e + a],
+                   ny = el.dndy[4 * e + a];
+      vxx += nx * vx;
+      vyy += ny * vy;
+      vxy += ny * vx + nx * vy;
+      qx += el.gamma[4 * e + a] * vx;
+      qy += el.gamma[4 * e + a] * vy;
+      p[a] = pressure[node];
+      rate[a] = pressure_rate[node];
+      mean_pressure += 0.25 * p[a];
+    }
+    const double g = hourglass_modulus(e), volume = el.volume[e];
+    double hx = hourglass_trial_[2 * e], hy = hourglass_trial_[2 * e + 1];
+    if (damping_ > 0.0) {
+      const double c11 = bulk_[e] + 4.0 / 3.0 * shear_[e], c12 = bulk_[e] - 2.0 / 3.0 * shear_[e];
+      sxx += damping_ * (c11 * vxx + c12 * vyy);
+      syy += damping_ * (c12 * vxx + c11 * vyy);
+      sxy += damping_ * shear_[e] * vxy;
+      hx += damping_ * g * (el.hourglass[3 * e] * qx + el.hourglass[3 * e + 1] * qy);
+      hy += damping_ * g * (el.hourglass[3 * e + 1] * qx + el.hourglass[3 * e + 2] * qy);
+    }
+    sxx -= mean_pressure;
+    syy -= mean_pressure;
+    const double storage = model_.porosity[e] * compressibility, alpha = model_.stabilisation[e];
+    const double kx = model_.permeability_x[e], ky = model_.permeability_y[e];
+    const double volume_rate = 0.25 * volume * (vxx + vyy);
+    const double *mass = &el.mass_matrix[10 * e], *gxx = &el.gradient_xx[10 * e], *gyy = &el.gradient_yy[10 * e];
+    for (int a = 0; a < 4; ++a) {
+      const std::size_t i = 4 * e + static_cast<std::size_t>(a);
+      const double nx = el.dndx[i], ny = el.dndy[i];
+      double* f = &element_forces_[3 * i];
+      f[0] = volume * (nx * sxx + ny * sxy) + el.gamma[i] * hx;
+      f[1] = volume * (ny * syy + nx * sxy) + el.gamma[i] * hy;
+      double flow = volume_rate + ky * fluid_density * gravity * el.gradient_y[i];
+      for (int b = 0; b < 4; ++b) {
+        const int ab = lower(a, b);
+        flow += (storage * mass[ab] + alpha * (gxx[ab] + gyy[ab])) * rate[b] + (kx * gxx[ab] + ky * gyy[ab]) * p[b];
+      }
+      f[2] = flow;
+    }
+  }
+#pragma omp parallel for schedule(static)
+  for (std::size_t n = 0; n < nodes; ++n) {
+    double sum[3] = {};
+    for (int k = model_.adjacency_start[n]; k < model_.adjacency_start[n + 1]; ++k) {
+      const double* f = &element_forces_[3 * static_cast<std::size_t>(model_.adjacency[static_cast<std::size_t>(k)])];
+      for (int i = 0; i < 3; ++i) sum[i] += f[i];
+    }
+    std::copy_n(sum, 3, &residual[3 * n]);
+  }
+  return report;
+}
+
+void ElementForces::commit(MaterialPoints& points, State& state, std::span<const double> increment) {
+  points.commit();
+  points.elastic_moduli(bulk_, shear_);
+  hourglass_committed_ = hourglass_trial_;
+  state.hourglass_force = hourglass_trial_;
+  state.stress = global_stress_;
+  if (!large_) return;
+  const auto* quads = model_.mesh.quads.data();
+#pragma omp parallel for schedule(static)
+  for (std::size_t e = 0; e < model_.count(); ++e) {
+    double spin = 0.0;
+    for (std::size_t a = 0; a < 4; ++a) {
+      const auto node = static_cast<std::size_t>(quads[4 * e + a]);
+      spin += 0.5 * (moved_.dndx[4 * e + a] * increment[2 * node + 1] - moved_.dndy[4 * e + a] * increment[2 * node]);
+    }
+    rotation_[e] += spin;
+    const double hx = hourglass_committed_[2 * e], hy = hourglass_committed_[2 * e + 1];
+    hourglass_committed_[2 * e] = hx * std::cos(spin) - hy * std::sin(spin);
+    hourglass_committed_[2 * e + 1] = hx * std::sin(spin) + hy * std::cos(spin);
+  }
+  moved_ = build_sspquadup(model_.mesh, state.displacement, model_.thickness, model_.options->hourglass_shape,
+                           model_.options->pressure_points);
+}
+
+void ElementForces::reset(const MaterialPoints& points, const State& state) {
+  points.elastic_moduli(bulk_, shear_);
+  hourglass_committed_ = state.hourglass_force;
+  if (large_)
+    moved_ = build_sspquadup(model_.mesh, state.displacement, model_.thickness, model_.options->hourglass_shape,
+                             model_.options->pressure_points);
+}
+
+void ElementForces::matrix(std::size_t e, double mass_factor, double stiffness_factor, double storage_factor,
+                           double flow_factor, double scale, double local[144]) const {
+  const SspQuadUp& el = elements();
+  double stiffness[64];
+  sspquadup_stiffness(el, e, bulk_[e], shear_[e], hourglass_modulus(e), stiffness);
+  const double storage = model_.porosity[e] / model_.options->fluid_bulk_modulus, alpha = model_.stabilisation[e];
+  const double coupling = 0.25 * el.volume[e] * scale;
+  for (int a = 0; a < 4; ++a) {
+    const std::size_t ia = 4 * e + static_cast<std::size_t>(a);
+    for (int b = 0; b < 4; ++b) {
+      const std::size_t ib = 4 * e + static_cast<std::size_t>(b);
+      const int ab = lower(a, b);
+      double* block = &local[12 * (3 * a) + 3 * b];
+      block[0] = stiffness_factor * stiffness[8 * (2 * a) + 2 * b];
+      block[1] = stiffness_factor * stiffness[8 * (2 * a) + 2 * b + 1];
+      block[12] = stiffness_factor * stiffness[8 * (2 * a + 1) + 2 * b];
+      block[13] = stiffness_factor * stiffness[8 * (2 * a + 1) + 2 * b + 1];
+      block[2] = -coupling * el.dndx[ia];
+      block[14] = -coupling * el.dndy[ia];
+      block[24] = -coupling * el.dndx[ib];
+      block[25] = -coupling * el.dndy[ib];
+      const double gxx = el.gradient_xx[10 * e + static_cast<std::size_t>(ab)],
+                   gyy = el.gradient_yy[10 * e + static_cast<std::size_t>(ab)];
+      const double d =
+          storage_factor * (storage * el.mass_matrix[10 * e + static_cast<std::size_t>(ab)] + alpha * (gxx + gyy)) +
+          flow_factor * (model_.permeability_x[e] * gxx + model_.permeability_y[e] * gyy);
+      block[26] = -scale * scale * d;
+    }
+    const double inertia = mass_factor * model_.density[e] * model_.elements.nodal_volume[ia];
+    local[12 * (3 * a) + 3 * a] += inertia;
+    local[12 * (3 * a + 1) + 3 * a + 1] += inertia;
+  }
+}
+
+double ElementForces::damping_power(std::size_t e, std::span<const double> velocity) const {
+  if (damping_ == 0.0) return 0.0;
+  const SspQuadUp& el = elements();
+  double local[8], stiffness[64], power = 0.0;
+  for (std::size_t a = 0; a < 4; ++a)
+    for (std::size_t i = 0; i < 2; ++i)
+      local[2 * a + i] = velocity[2 * static_cast<std::size_t>(model_.mesh.quads[4 * e + a]) + i];
+  sspquadup_stiffness(el, e, bulk_[e], shear_[e], hourglass_modulus(e), stiffness);
+  for (std::size_t a = 0; a < 8; ++a)
+    for (std::size_t b = 0; b < 8; ++b) power += local[a] * stiffness[8 * a + b] * local[b];
+  return damping_ * power;
+}
+
+double ElementForces::hourglass_energy(const State& state) const {
+  const SspQuadUp& el = elements();
+  double energy = 0.0;
+  for (std::size_t e = 0; e < model_.count(); ++e) {
+    const double g = hourglass_modulus(e), f11 = g * el.hourglass[3 * e], f12 = g * el.hourglass[3 * e + 1],
+                 f22 = g * el.hourglass[3 * e + 2];
+    const double hx = state.hourglass_force[2 * e], hy = state.hourglass_force[2 * e + 1], det = f11 * f22 - f12 * f12;
+    if (det > 0.0) energy += 0.5 * (f22 * hx * hx - 2.0 * f12 * hx * hy + f11 * hy * hy) / det;
+  }
+  return energy;
+}
+
+}  // namespace tailrun::fem

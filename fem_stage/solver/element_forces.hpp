@@ -1,0 +1,64 @@
+// Nodal residual of the semi-discrete u-p system (Zienkiewicz & Shiomi 1984), element part:
+//
+//   r_u = f_int(u) - Q p + a1 K_e v          internal force, water's share, stiffness proportional damping
+//   r_p = Q^T v + (S + S_alpha) p' + H p - f_p
+//
+// Two passes over the elements with the materials' update between them, then a gather per node in a fixed order, so
+// that the sums are the same for any number of threads.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fem_stage/model/model.hpp"
+
+namespace tailrun::fem {
+
+class ElementForces {
+ public:
+  // `damping` is a1 (s). With `large_displacement` the geometry follows the committed displacement and stress lives in
+  // a frame that rotates with the element (the spin integrated over the steps).
+  ElementForces(const Model& model, double damping, bool large_displacement);
+
+  // Trial state: `increment` (m, (N, 2)) since the last commit, velocity (N, 2), pressure and rate (N). Writes
+  // `residual` (N, 3) as above. Returns what the materials report.
+  UpdateReport evaluate(MaterialPoints& points, std::span<const double> increment, std::span<const double> velocity,
+                        std::span<const double> pressure, std::span<const double> pressure_rate,
+                        std::span<double> residual);
+
+  // Accepts the last evaluation: hourglass forces, moduli for tangent and damping, geometry when it moves.
+  void commit(MaterialPoints& points, State& state, std::span<const double> increment);
+  void reset(const MaterialPoints& points, const State& state);  // takes over a state's hourglass forces and moduli
+
+  // Element matrix of the Newmark system, 12 x 12, symmetric, pressure freedoms scaled by `scale` (Pa/m):
+  //   [ mass_factor M + stiffness_factor K,  -Q ; -Q^T,  -(storage_factor (S + S_alpha) + flow_factor H) ]
+  void matrix(std::size_t e, double mass_factor, double stiffness_factor, double storage_factor, double flow_factor,
+              double scale, double local[144]) const;
+
+  const SspQuadUp& elements() const { return large_ ? moved_ : model_.elements; }
+  std::span<const double> trial_stress() const {
+    return global_stress_;
+  }                                                                     // Pa, (M, 4), effective, of the last evaluation
+  std::span<const double> strain_increment() const { return strain_; }  // (M, 3), global axes
+  double hourglass_energy(const State& state) const;                    // J, stored in the hourglass modes
+  double damping_power(std::size_t e,
+                       std::span<const double> velocity) const;  // W, of the stiffness proportional damping
+  double damping() const { return damping_; }
+  double material_seconds() const { return material_seconds_; }
+
+ private:
+  double hourglass_modulus(std::size_t e) const;
+
+  const Model& model_;
+  double damping_;
+  bool large_;
+  SspQuadUp moved_;
+  std::vector<double> bulk_, shear_;  // of the last commit
+  std::vector<double> hourglass_committed_, hourglass_trial_;
+  std::vector<double> rotation_;  // rad, (M), only with large displacement
+  std::vector<double> strain_, material_strain_, stress_, global_stress_, element_forces_;
+  double material_seconds_ = 0.0;
+};
+
+}  // namespace tailrun::fem

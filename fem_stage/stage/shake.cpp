@@ -1,0 +1,201 @@
+#include "fem_stage/stage/shake.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "common/error.hpp"
+#include "common/progress.hpp"
+#include "fem_stage/output/state_file.hpp"
+
+namespace tailrun::fem {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Lysmer & Kuhlemeyer (1969) for a compliant base: dashpots of the rock's shear impedance, and the force that makes an
+// outcrop motion come up through them (Joyner & Chen 1975): F = rho V_s A v_outcrop.
+std::vector<Dashpot> base_dashpots(const Model& model) {
+  const auto& boundaries = model.options->boundaries;
+  std::vector<Dashpot> dashpots;
+  if (boundaries.base != BaseKind::lysmer_dashpot) return dashpots;
+  for (std::size_t i = 0; i < model.base_nodes.size(); ++i)
+    dashpots.push_back({model.base_nodes[i], freedom_ux,
+                        boundaries.rock_density * boundaries.rock_shear_velocity * model.base_area[i]});
+  return dashpots;
+}
+
+BaseMotion rigid_base_motion(const Model& model, const Motion& motion, double time, double displacement) {
+  if (model.options->boundaries.base != BaseKind::rigid) return {};
+  return {motion.acceleration_at(time), motion.velocity_at(time), displacement};
+}
+
+// Advances by dt; on failure by two halves, down to dt / 2^max_halvings. Returns the reason when that is not enough.
+class Stepper {
+ public:
+  Stepper(const Model& model, MaterialPoints& points, State& state, ElementForces& forces, Newmark& newmark,
+          EnergyLedger& ledger)
+      : model_(model),
+        points_(points),
+        state_(state),
+        forces_(forces),
+        newmark_(newmark),
+        ledger_(ledger),
+        last_load_(2 * model.nodes(), 0.0) {}
+
+  std::string advance(double dt, int halvings_left) {
+    recorder_.before(state_, last_load_);
+    const StepResult result = newmark_.step(state_, points_, forces_, dt);
+    if (result.converged) {
+      recorder_.after(model_, state_, forces_, newmark_, ledger_);
+      last_load_.assign(newmark_.last_load().begin(), newmark_.last_load().end());
+      return {};
+    }
+    if (halvings_left == 0)
+      return fmt::format("at t = {:.5f} s with a step of {:.2e} s: {}", state_.time, dt, result.reason);
+    ++newmark_.counts().halvings;
+    spdlog::debug("t = {:.5f} s: step {:.2e} s cut: {}", state_.time, dt, result.reason);
+    for (int half = 0; half < 2; ++half)
+      if (std::string reason = advance(0.5 * dt, halvings_left - 1); !reason.empty()) return reason;
+    return {};
+  }
+  void start_load(std::vector<double> load) { last_load_ = std::move(load); }
+
+ private:
+  const Model& model_;
+  MaterialPoints& points_;
+  State& state_;
+  ElementForces& forces_;
+  Newmark& newmark_;
+  EnergyLedger& ledger_;
+  EnergyRecorder recorder_;
+  std::vector<double> last_load_;
+};
+
+}  // namespace
+
+Motion case_motion(const FemCase& options) {
+  Motion motion = read_motion(options.shake.motion);
+  if (options.shake.peak_acceleration > 0.0)
+    motion = scaled_to_peak(std::move(motion), options.shake.peak_acceleration);
+  return motion;
+}
+
+ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, const Motion& motion,
+                      const std::filesystem::path& folder) {
+  const auto start = std::chrono::steady_clock::now();
+  const ShakeOptions& options = model.options->shake;
+  const OutputOptions& output = model.options->output;
+  const bool rigid = model.options->boundaries.base == BaseKind::rigid;
+  std::filesystem::create_directories(folder);
+  ShakeReport report;
+
+  // 1. Freedoms, dashpots and loads of this stage.
+  const Freedoms freedoms = shaking_freedoms(model);
+  const auto dashpots = base_dashpots(model);
+  const auto load = [&](double time, std::span<double> force) {
+    const double base_acceleration = rigid ? motion.acceleration_at(time) : 0.0;
+    for (std::size_t n = 0; n < model.nodes(); ++n) {
+      force[2 * n] -= model.nodal_mass[n] * base_acceleration;
+      force[2 * n + 1] -= model.nodal_mass[n] * model.options->gravity;
+    }
+    const double velocity = rigid ? 0.0 : motion.velocity_at(time);
+    for (const auto& dashpot : dashpots)
+      force[2 * static_cast<std::size_t>(dashpot.node)] += dashpot.coefficient * velocity;
+  };
+
+  // 2. The solver, its matrix made from the geostatic moduli.
+  const double damping = options.damping_ratio > 0.0
+                             ? 2.0 * options.damping_ratio / (2.0 * std::numbers::pi * options.damping_frequency)
+                             : 0.0;
+  ElementForces forces(model, damping, options.large_displacement);
+  forces.reset(points, state);
+  report.ledger.initial_hourglass_energy = forces.hourglass_energy(state);
+  NewmarkOptions newmark_options{options.gamma,
+                                 options.beta,
+                                 options.theta,
+                                 options.tolerance,
+                                 options.max_iterations,
+                                 options.refactor_above,
+                                 options.acceleration_depth};
+  Newmark newmark(model, freedoms, newmark_options, dashpots, load);
+  Stepper stepper(model, points, state, forces, newmark, report.ledger);
+  std::vector<double> first_load(2 * model.nodes(), 0.0);
+  load(state.time, first_load);
+  stepper.start_load(std::move(first_load));
+
+  // 3. Steps, with output on the way.
+  History history(model, folder);
+  QualitySeries quality(model, folder);
+  Progress progress("shake", options.duration, "s");
+  std::size_t next_snapshot = 0;
+  double next_record = 0.0, next_regular = output.snapshot_interval, rigid_displacement = 0.0;
+  const double slack = 1e-6 * options.time_step;
+  const auto write_outputs = [&] {
+    const auto output_start = std::chrono::steady_clock::now();
+    const BaseMotion base = rigid_base_motion(model, motion, state.time, rigid_displacement);
+    if (state.time >= next_record - slack) {
+      history.record(state, base);
+      quality.record(state, newmark.counts(), seconds_since(start));
+      while (next_record <= state.time + slack) next_record += output.history_interval;
+    }
+    bool wanted = false;
+    while (next_snapshot < output.snapshots.size() && state.time >= output.snapshots[next_snapshot] - slack) {
+      ++next_snapshot;
+      wanted = true;
+    }
+    if (output.snapshot_interval > 0.0 && state.time >= next_regular - slack) {
+      next_regular += output.snapshot_interval;
+      wanted = true;
+    }
+    if (wanted) {
+      const std::string name = fmt::format("snapshot_t{:06.3f}.h5", state.time);
+      write_state(folder / name, model, state, points, base.velocity, base.acceleration, base.displacement);
+      report.snapshots.push_back(name);
+    }
+    report.output_seconds += seconds_since(output_start);
+  };
+  write_outputs();
+  const long total_steps = std::lround(std::ceil(options.duration / options.time_step - 1e-9));
+  for (long step = 1; step <= total_steps && report.failure.empty(); ++step) {
+    const double before = state.time,
+                 target = std::min(options.duration, options.time_step * static_cast<double>(step));
+    report.failure = stepper.advance(target - before, options.max_halvings);
+    if (!report.failure.empty()) break;
+    state.time = target;  // no drift from adding up steps
+    if (rigid)
+      rigid_displacement += 0.5 * (motion.velocity_at(before) + motion.velocity_at(target)) * (target - before);
+    const auto ratio = excess_pore_pressure_ratio(model, state);
+    for (std::size_t e = 0; e < model.count(); ++e)
+      state.max_pore_pressure_ratio[e] = std::max(state.max_pore_pressure_ratio[e], ratio[e]);
+    write_outputs();
+    if (!quality.rows().empty())
+      progress.update(state.time, step,
+                      fmt::format("max displacement {:.2f} m", quality.rows().back().largest_displacement));
+  }
+  progress.finish(report.failure.empty() ? "" : "stopped");
+
+  // 4. What came of it.
+  if (!report.failure.empty()) {
+    const BaseMotion base = rigid_base_motion(model, motion, state.time, rigid_displacement);
+    const std::string name = fmt::format("last_good_t{:07.4f}.h5", state.time);
+    write_state(folder / name, model, state, points, base.velocity, base.acceleration, base.displacement);
+    report.snapshots.push_back(name);
+  }
+  history.finish();
+  quality.finish();
+  report.end_time = state.time;
+  report.counts = newmark.counts();
+  report.quality = quality.rows();
+  report.window = find_transfer_window(report.quality, motion.significant_duration(0.05, 0.95).second);
+  report.material_seconds = forces.material_seconds();
+  report.wall_seconds = seconds_since(start);
+  return report;
+}
+
+}  // namespace tailrun::fem

@@ -1,0 +1,33 @@
+// The shaking stage: from the geostatic state through the motion, with snapshots, histories and a summary.
+#pragma once
+
+#include <filesystem>
+
+#include "common/motion.hpp"
+#include "fem_stage/model/model.hpp"
+#include "fem_stage/output/history.hpp"
+#include "fem_stage/solver/energy_ledger.hpp"
+#include "fem_stage/solver/newmark.hpp"
+#include "fem_stage/stage/transfer_window.hpp"
+
+namespace tailrun::fem {
+
+struct ShakeReport {
+  double end_time = 0.0, wall_seconds = 0.0, material_seconds = 0.0, output_seconds = 0.0;
+  SolverCounts counts;
+  EnergyLedger ledger;
+  std::vector<QualityRow> quality;
+  TransferWindow window;
+  std::vector<std::string> snapshots;  // file names
+  std::string failure;                 // empty when the run reached its end
+};
+
+// The motion as the case wants it: read, scaled. Throws InputError.
+Motion case_motion(const FemCase& options);
+
+// Writes snapshot_t*.h5, history.csv and quality.csv into `folder`. On failure of the computation the last good state
+// is written as last_good_t*.h5 and `failure` says why.
+ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, const Motion& motion,
+                      const std::filesystem::path& folder);
+
+}  // namespace tailrun::fem
