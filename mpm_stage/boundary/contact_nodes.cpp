@@ -19,22 +19,24 @@ void ContactNodes<Dim>::update(const BlockGrid<Dim>& grid) {
     if (is_new) {
       const double x0 = grid.origin()[0] + index[0] * B * h, y0 = grid.origin()[1] + index[1] * B * h;
       const double half = 0.5 * (B - 1) * h;
-      if (terrain_.distance(x0 + half, y0 + half) < reach_ + 1.4143 * half) {
-        std::vector<NodeContact> nodes(Block<Dim>::nodes);
-        bool any = false;
+      // A particle within two cells of a node in contact, and the nodes around it, count as near.
+      if (terrain_.distance(x0 + half, y0 + half) < reach_ + 4.0 * h + 1.4143 * half) {
+        it->second = static_cast<std::ptrdiff_t>(contacts_.size());
         for (int n = 0; n < Block<Dim>::nodes; ++n) {
           const int i = n % B, j = n / B % B;
-          nodes[n].count = terrain_.contacts(x0 + i * h, y0 + j * h, reach_, nodes[n].point, nodes[n].adhere);
-          any = any || nodes[n].count > 0;
-        }
-        if (any) {
-          it->second = static_cast<std::ptrdiff_t>(contacts_.size());
-          contacts_.insert(contacts_.end(), nodes.begin(), nodes.end());
+          NodeContact node;
+          node.count = terrain_.contacts(x0 + i * h, y0 + j * h, reach_, node.point, node.adhere);
+          contacts_.push_back(node);
+          distances_.push_back(terrain_.distance(x0 + i * h, y0 + j * h));
         }
       }
     }
     block_start_[a] = it->second;
   }
+  near_.assign(grid.occupied(), 0);
+  for (std::size_t b = 0; b < grid.occupied(); ++b)
+    for (const int a : grid.active_around(b))
+      if (block_start_[static_cast<std::size_t>(a)] >= 0) near_[b] = 1;
 }
 
 template class ContactNodes<2>;

@@ -26,10 +26,15 @@ class ContactNodes {
   // Looks up the active blocks of `grid`; call after each sort.
   void update(const BlockGrid<Dim>& grid);
 
-  // Contacts of the nodes of active block a, or null when none of them touches the ground.
+  bool any() const { return !contacts_.empty(); }
+  // Contacts of the nodes of active block a, or null when the ground is too far off for any particle there to touch it.
   const NodeContact* of_block(std::size_t a) const {
     return block_start_.empty() || block_start_[a] < 0 ? nullptr : contacts_.data() + block_start_[a];
   }
+  // Signed distance (m) of the same nodes.
+  const double* distances(std::size_t a) const { return distances_.data() + block_start_[a]; }
+  // Whether occupied block b or a neighbour of it has nodes near the ground.
+  bool near_ground(std::size_t b) const { return !near_.empty() && near_[b]; }
 
  private:
   const Terrain& terrain_;
@@ -37,6 +42,8 @@ class ContactNodes {
   std::unordered_map<std::uint64_t, std::ptrdiff_t> known_;
   std::vector<std::ptrdiff_t> block_start_;
   std::vector<NodeContact> contacts_;
+  std::vector<double> distances_;
+  std::vector<std::uint8_t> near_;
 };
 
 }  // namespace tailrun::mpm

@@ -34,14 +34,14 @@ inline void gather_tiles(const BlockGrid<Dim>& grid, std::size_t a, const Value*
   }
 }
 
-// tile[0 .. Tile::nodes) = values of the nodes that occupied block b's tile covers; nodes hold Block::nodes values per
-// active block.
-template <int Dim, class Shape, class Value>
-inline void load_tile(const BlockGrid<Dim>& grid, std::size_t b, const Value* nodes, Value* tile) {
+// tile[0 .. Tile::nodes) = values of the nodes that occupied block b's tile covers. `of_block(a)` points to the
+// Block::nodes values of active block a; where it is null the tile gets `otherwise`.
+template <int Dim, class Shape, class Value, class OfBlock>
+inline void load_tile_if(const BlockGrid<Dim>& grid, std::size_t b, OfBlock of_block, Value otherwise, Value* tile) {
   constexpr int B = Block<Dim>::cells, T = Tile<Dim, Shape>::side, low = Tile<Dim, Shape>::low;
   const auto& around = grid.active_around(b);
   for (int n = 0; n < Block<Dim>::neighbours; ++n) {
-    const Value* block = nodes + static_cast<std::size_t>(around[n]) * Block<Dim>::nodes;
+    const Value* block = of_block(static_cast<std::size_t>(around[n]));
     int first[3] = {0, 0, 0}, last[3] = {1, 1, 1}, to_tile[3] = {0, 0, 0};
     for (int d = 0, m = n; d < Dim; ++d, m /= 3) {
       to_tile[d] = (m % 3 - 1) * B - low;
@@ -50,11 +50,20 @@ inline void load_tile(const BlockGrid<Dim>& grid, std::size_t b, const Value* no
     }
     for (int k = first[2]; k < last[2]; ++k)
       for (int j = first[1]; j < last[1]; ++j) {
-        const Value* row = block + (k * B + j) * B;
         Value* target = tile + ((k + to_tile[2]) * T + j + to_tile[1]) * T + to_tile[0];
-        for (int i = first[0]; i < last[0]; ++i) target[i] = row[i];
+        if (block)
+          for (int i = first[0]; i < last[0]; ++i) target[i] = block[(k * B + j) * B + i];
+        else
+          for (int i = first[0]; i < last[0]; ++i) target[i] = otherwise;
       }
   }
+}
+
+// The same with Block::nodes values per active block one after the other.
+template <int Dim, class Shape, class Value>
+inline void load_tile(const BlockGrid<Dim>& grid, std::size_t b, const Value* nodes, Value* tile) {
+  load_tile_if<Dim, Shape>(
+      grid, b, [nodes](std::size_t a) { return nodes + a * Block<Dim>::nodes; }, Value{}, tile);
 }
 
 }  // namespace tailrun::mpm

@@ -16,6 +16,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
+#include "mpm_stage/boundary/contact_gap.hpp"
 #include "mpm_stage/grid/tiles.hpp"
 #include "mpm_stage/material/stress_update.hpp"
 #include "mpm_stage/step/grid_update.hpp"
@@ -142,6 +143,7 @@ class ExplicitSolver final : public Solver<Dim> {
   void average();
   void update_stresses(double dt);
   void particles_to_grid();
+  void scatter_ground_gaps(std::size_t b);
   [[noreturn]] void fail(std::size_t begin, std::size_t end, const std::string& what) const;
 
   SolverOptions options_;
@@ -161,6 +163,7 @@ class ExplicitSolver final : public Solver<Dim> {
   AlignedVector<Vec4> velocity_, change_;  // per active block
   std::vector<AveragedNode> averaged_tiles_;
   std::vector<double> averaged_;
+  std::vector<Gap> gap_tiles_;
   std::vector<GridSums<Dim>> grid_sums_;
   struct BlockMotion {
     double far = 0.0, wave = 0.0, fast = 0.0, kinetic = 0.0;
@@ -206,6 +209,7 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::sort() {
     averaged_tiles_.resize(tiles_.size());
     averaged_.resize(velocity_.size());
   }
+  if (ground_.any()) gap_tiles_.resize(tiles_.size());
   grid_sums_.resize(grid_.active());
   motion_.resize(grid_.occupied());
   dissipated_.resize(grid_.occupied());
@@ -240,6 +244,8 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::update_grid(double dt, const std::
     if constexpr (Split) gather_tiles<Dim, Shape>(grid_, a, forces_.data(), force);
     GridSums<Dim> sums;
     const NodeContact* contact = ground_.of_block(a);
+    Gap gap[block_nodes];
+    if (contact) gather_tiles<Dim, Shape>(grid_, a, gap_tiles_.data(), gap);
     for (int n = 0; n < block_nodes; ++n) {
       const double m = sum[n][0];
       Vec4& out = velocity_[a * block_nodes + n];
@@ -261,7 +267,8 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::update_grid(double dt, const std::
         if (options_.local_damping > 0.0)
           sums.damping += m * apply_local_damping<Dim>(options_.local_damping, dt, before, v);
       const std::array<double, Dim> pushed = v;
-      if (contact && contact[n].count > 0) apply_ground<Dim>(contact[n], m, v, sums);
+      if (contact && contact[n].count > 0)
+        apply_ground<Dim>(contact[n], m, std::max(0.0, gap[n].value) / dt, v, sums);
       if (wall_nodes_.any) {
         std::array<int, Dim> node;
         for (int d = 0, k = n; d < Dim; ++d, k /= B) node[d] = grid_.active_index(a)[d] * B + k % B;
@@ -409,8 +416,21 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::particles_to_grid() {
       mpm::particles_to_grid<Shape, Split, true>(next_dt_, h1_, corner(b), P_, begin, end, tile, force);
     else
       mpm::particles_to_grid<Shape, Split, false>(next_dt_, h1_, corner(b), P_, begin, end, tile, force);
+    if (ground_.any()) scatter_ground_gaps(b);
   }
   add_time(seconds_.particles_to_grid, since);
+}
+
+template <int Dim, class Shape, bool Split, bool Flip>
+void ExplicitSolver<Dim, Shape, Split, Flip>::scatter_ground_gaps(std::size_t b) {
+  Gap* gap = gap_tiles_.data() + b * tile_nodes;
+  std::fill(gap, gap + tile_nodes, Gap{});
+  if (!ground_.near_ground(b)) return;
+  double distance[tile_nodes];
+  load_tile_if<Dim, Shape>(
+      grid_, b, [this](std::size_t a) { return ground_.of_block(a) ? ground_.distances(a) : nullptr; }, no_gap_known,
+      distance);
+  scatter_gaps<Dim, Shape>(P_, grid_.first_particle(b), grid_.last_particle(b), corner(b), h1_, distance, gap);
 }
 
 template <int Dim, class Shape, bool Split, bool Flip>

@@ -1,0 +1,61 @@
+// The gap between material and ground as a node sees it: the least clearance of the particles in its reach, a particle
+// being a sphere of its own volume's size. A node stops material only when this gap is closed.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mpm_stage/boundary/contact_nodes.hpp"
+
+namespace tailrun::mpm {
+
+constexpr double no_gap_known = std::numeric_limits<double>::infinity();
+
+// Least value wins where tiles overlap.
+struct Gap {
+  double value = no_gap_known;
+  Gap& operator+=(const Gap& o) {
+    value = std::min(value, o.value);
+    return *this;
+  }
+};
+
+// `distance` is the tile of the nodes' signed distances, infinity where unknown; adds to the tile `gap`.
+template <int Dim, class Shape>
+void scatter_gaps(const Particles<Dim>& P, std::size_t begin, std::size_t end, const std::array<double, Dim>& corner,
+                  double h1, const double* distance, Gap* gap) {
+  constexpr int T = Tile<Dim, Shape>::side, S = Shape::support;
+  for (std::size_t p = begin; p < end; ++p) {
+    // Distance at the particle: linear between nodes, exact but for corners of the ground.
+    double clearance = 0.0, w[3][S], unused[S], moment[S];
+    int base[3] = {0, 0, 0}, cell[3] = {0, 0, 0};
+    double f[3] = {0, 0, 0};
+    for (int d = 0; d < Dim; ++d) {
+      const double X = (P.position[d][p] - corner[d]) * h1;
+      base[d] = Shape::evaluate(X, w[d], unused, moment);
+      cell[d] = static_cast<int>(X);
+      f[d] = X - cell[d];
+    }
+    for (int n = 0; n < (1 << Dim); ++n) {
+      double weight = 1.0;
+      int at = 0;
+      for (int d = Dim - 1; d >= 0; --d) {
+        weight *= (n >> d & 1) ? f[d] : 1.0 - f[d];
+        at = at * T + cell[d] + (n >> d & 1);
+      }
+      clearance += weight * distance[at];
+    }
+    const double size = Dim == 2 ? std::sqrt(P.volume[p]) : std::cbrt(P.volume[p]);
+    clearance -= 0.5 * size;
+    if (!(clearance < 2.0 / h1)) continue;
+    for (int k = 0; k < (Dim == 3 ? S : 1); ++k)
+      for (int j = 0; j < S; ++j)
+        for (int i = 0; i < S; ++i) {
+          if (w[0][i] * w[1][j] * (Dim == 3 ? w[2][k] : 1.0) <= 0.0) continue;
+          gap[((base[2] + k) * T + base[1] + j) * T + base[0] + i] += Gap{clearance};
+        }
+  }
+}
+
+}  // namespace tailrun::mpm

@@ -1,0 +1,129 @@
+#include "mpm_stage/output/front.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/application.hpp"
+
+namespace tailrun::mpm {
+
+template <int Dim>
+FrontSeries<Dim>::FrontSeries(const Scene& scene) : output_(scene.output) {
+  bool any = false;
+  for (const auto& m : scene.materials) {
+    moving_.push_back(m.model != Model::linear_elastic && m.model != Model::rigid);
+    any = any || moving_.back();
+  }
+  if (!any) moving_.assign(moving_.size(), true);
+  const ParticleSet& set = scene.particles;
+  // The crest, unless points are named: the highest moving particle, and of those at the same height the outermost.
+  if (output_.points.empty()) {
+    double top = -std::numeric_limits<double>::infinity(), out = top;
+    TrackedPoint crest{"crest", {0.0, 0.0}};
+    for (std::size_t p = 0; p < set.count(); ++p) {
+      if (!moving_[static_cast<std::size_t>(set.material_id[p])]) continue;
+      const double x = set.position[3 * p], y = set.position[3 * p + 1], ahead = output_.front_sign * x;
+      if (y > top + 1e-9 || (y > top - 1e-9 && ahead > out)) {
+        top = std::max(top, y);
+        out = ahead;
+        crest.position = {x, y};
+      }
+    }
+    output_.points.push_back(crest);
+  }
+  for (const auto& point : output_.points) {
+    double least = std::numeric_limits<double>::infinity();
+    std::int32_t nearest = 0;
+    for (std::size_t p = 0; p < set.count(); ++p) {
+      if (!moving_[static_cast<std::size_t>(set.material_id[p])]) continue;
+      const double d = std::hypot(set.position[3 * p] - point.position[0], set.position[3 * p + 1] - point.position[1]);
+      if (d < least) {
+        least = d;
+        nearest = static_cast<std::int32_t>(p);
+      }
+    }
+    followed_.push_back(nearest);
+  }
+}
+
+template <int Dim>
+const FrontRow& FrontSeries<Dim>::sample(double time, const Particles<Dim>& P) {
+  FrontRow row;
+  row.time = time;
+  row.points.assign(2 * followed_.size(), std::nan(""));
+  row.top = -std::numeric_limits<double>::infinity();
+  scratch_.clear();
+  double mass = 0.0, energy = 0.0, fastest = 0.0;
+  for (std::size_t p = 0; p < P.count(); ++p) {
+    for (std::size_t k = 0; k < followed_.size(); ++k)
+      if (P.identity[p] == followed_[k]) {
+        row.points[2 * k] = P.position[0][p];
+        row.points[2 * k + 1] = P.position[1][p];
+      }
+    if (!moving_[static_cast<std::size_t>(P.material[p])]) continue;
+    double v2 = 0.0;
+    for (int d = 0; d < Dim; ++d) v2 += P.velocity[d][p] * P.velocity[d][p];
+    mass += P.mass[p];
+    energy += P.mass[p] * v2;
+    fastest = std::max(fastest, v2);
+    row.centre_x += P.mass[p] * P.position[0][p];
+    row.centre_y += P.mass[p] * P.position[1][p];
+    row.top = std::max(row.top, P.position[1][p]);
+    scratch_.emplace_back(output_.front_sign * P.position[output_.front_axis][p], P.mass[p]);
+  }
+  if (!scratch_.empty()) {
+    // Only the leading part has to be in order to find the quantile of mass.
+    const auto ahead = [](const auto& a, const auto& b) { return a.first > b.first; };
+    const std::size_t some = std::min(
+        scratch_.size(),
+        8 + static_cast<std::size_t>(4.0 * (1.0 - output_.front_quantile) * static_cast<double>(scratch_.size())));
+    std::partial_sort(scratch_.begin(), scratch_.begin() + static_cast<std::ptrdiff_t>(some), scratch_.end(), ahead);
+    double sum = 0.0;
+    std::size_t k = 0;
+    while (k + 1 < some && sum + scratch_[k].second < (1.0 - output_.front_quantile) * mass)
+      sum += scratch_[k++].second;
+    row.front = output_.front_sign * scratch_.front().first;
+    row.robust_front = output_.front_sign * scratch_[k].first;
+    row.centre_x /= mass;
+    row.centre_y /= mass;
+    row.rms_speed = std::sqrt(energy / mass);
+    row.maximum_speed = std::sqrt(fastest);
+  }
+  rows_.push_back(std::move(row));
+  return rows_.back();
+}
+
+template <int Dim>
+bool FrontSeries<Dim>::at_rest(const RestCriterion& rest) const {
+  if (!rest.active || rows_.empty()) return false;
+  const FrontRow& last = rows_.back();
+  if (last.time - rows_.front().time < rest.duration) return false;
+  for (auto row = rows_.rbegin(); row != rows_.rend(); ++row) {
+    if (row->rms_speed > rest.speed) return false;
+    if (last.time - row->time >= rest.duration * (1.0 - 1e-9))
+      return std::fabs(last.robust_front - row->robust_front) <= rest.speed * (last.time - row->time);
+  }
+  return false;
+}
+
+template <int Dim>
+void FrontSeries<Dim>::write(const std::filesystem::path& path) const {
+  std::string text = "time_s,front_m,robust_front_m,top_m,centre_x_m,centre_y_m,rms_speed_m_s,maximum_speed_m_s";
+  for (const auto& p : output_.points) text += fmt::format(",{0}_x_m,{0}_y_m", p.name);
+  text += "\n";
+  for (const auto& r : rows_) {
+    text += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", r.time, r.front, r.robust_front,
+                        r.top, r.centre_x, r.centre_y, r.rms_speed, r.maximum_speed);
+    for (const double x : r.points) text += fmt::format(",{:.9g}", x);
+    text += "\n";
+  }
+  write_text_file(path.string(), text);
+}
+
+template class FrontSeries<2>;
+template class FrontSeries<3>;
+
+}  // namespace tailrun::mpm

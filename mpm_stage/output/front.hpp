@@ -1,0 +1,43 @@
+// Where the mass has got to: the front, the top, and points that are followed; and whether it has come to rest.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <filesystem>
+#include <vector>
+
+#include "mpm_stage/scene/scene.hpp"
+
+namespace tailrun::mpm {
+
+struct FrontRow {
+  double time = 0.0;                      // s
+  double front = 0.0;                     // m, outermost moving particle
+  double robust_front = 0.0;              // m, ahead of which only 1 - quantile of the moving mass lies
+  double top = 0.0;                       // m, highest moving particle
+  double centre_x = 0.0, centre_y = 0.0;  // m, of the moving mass
+  double rms_speed = 0.0;                 // m/s, of the moving mass
+  double maximum_speed = 0.0;             // m/s
+  std::vector<double> points;             // m, x and y of the followed points
+};
+
+// Moving materials are all that are not linear elastic, unless everything is.
+template <int Dim>
+class FrontSeries {
+ public:
+  explicit FrontSeries(const Scene& scene);
+  const FrontRow& sample(double time, const Particles<Dim>& P);
+  // Both thresholds of the criterion have held for its whole duration.
+  bool at_rest(const RestCriterion& rest) const;
+  const std::vector<FrontRow>& rows() const { return rows_; }
+  void write(const std::filesystem::path& path) const;
+
+ private:
+  std::vector<bool> moving_;  // by material
+  OutputOptions output_;
+  std::vector<std::int32_t> followed_;  // identities
+  std::vector<FrontRow> rows_;
+  std::vector<std::pair<double, double>> scratch_;
+};
+
+}  // namespace tailrun::mpm

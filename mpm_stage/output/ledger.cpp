@@ -1,0 +1,82 @@
+#include "mpm_stage/output/ledger.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/application.hpp"
+#include "common/error.hpp"
+
+namespace tailrun::mpm {
+
+namespace {
+
+double losses(const WorkDone& w) {
+  return w.plastic + w.friction + w.damping + w.removed;
+}
+
+}  // namespace
+
+template <int Dim>
+double Ledger<Dim>::turnover() const {
+  const LedgerRow &first = rows_.front(), &last = rows_.back();
+  return std::max({std::fabs(first.gravitational - last.gravitational), first.kinetic + first.elastic, largest_kinetic_,
+                   losses(last.work)}) +
+         std::fabs(last.work.external);
+}
+
+template <int Dim>
+const LedgerRow& Ledger<Dim>::sample(double time, Solver<Dim>& solver, double limit) {
+  const Particles<Dim>& P = solver.particles();
+  LedgerRow row;
+  row.time = time;
+  for (std::size_t p = 0; p < P.count(); ++p) {
+    double v2 = 0.0, height = 0.0;
+    for (int d = 0; d < Dim; ++d) {
+      v2 += P.velocity[d][p] * P.velocity[d][p];
+      height -= gravity_[d] * P.position[d][p];
+      row.momentum[d] += P.mass[p] * P.velocity[d][p];
+    }
+    row.kinetic += 0.5 * P.mass[p] * v2;
+    row.gravitational += P.mass[p] * height;
+    row.mass += P.mass[p];
+    row.angular_momentum += P.mass[p] * (P.position[0][p] * P.velocity[1][p] - P.position[1][p] * P.velocity[0][p]);
+  }
+  row.elastic = solver.elastic_energy();
+  row.work = solver.work();
+  largest_kinetic_ = std::max(largest_kinetic_, row.kinetic);
+  if (!rows_.empty()) {
+    const LedgerRow& first = rows_.front();
+    // A particle that left took its height's energy along, so mass that went is no longer comparable.
+    row.residual = first.total() + row.work.external - losses(row.work) - row.total();
+    if (row.mass < first.mass * (1.0 - 1e-12)) row.residual = std::nan("");
+  }
+  rows_.push_back(row);
+  const double scale = turnover();
+  if (!std::isfinite(row.total()) || row.residual < -limit * scale - 1e-9 * std::fabs(rows_.front().total()))
+    throw ComputationError(fmt::format(
+        "energy has grown without work that explains it: at t = {:.6g} s the ledger's residual is {:.4g} J of {:.4g} J "
+        "turned over (limit {} of it); a shorter time step (time/courant) may help",
+        time, row.residual, scale, limit));
+  return rows_.back();
+}
+
+template <int Dim>
+void Ledger<Dim>::write(const std::filesystem::path& path) const {
+  std::string text =
+      "time_s,kinetic_J,elastic_J,gravitational_J,plastic_J,friction_J,damping_J,external_J,residual_J,"
+      "mass_kg,momentum_x_Ns,momentum_y_Ns,momentum_z_Ns,angular_momentum_Nms\n";
+  for (const auto& r : rows_)
+    text += fmt::format(
+        "{:.9g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.15g},{:.15g},{:.15g},{:.15g},{:.15g}"
+        "\n",
+        r.time, r.kinetic, r.elastic, r.gravitational, r.work.plastic, r.work.friction, r.work.damping, r.work.external,
+        r.residual, r.mass, r.momentum[0], r.momentum[1], r.momentum[2], r.angular_momentum);
+  write_text_file(path.string(), text);
+}
+
+template class Ledger<2>;
+template class Ledger<3>;
+
+}  // namespace tailrun::mpm

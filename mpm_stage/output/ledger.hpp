@@ -1,0 +1,46 @@
+// The energy ledger: where the energy of the start went. What the separately counted losses do not explain is the
+// residual: what the transfer between particles and grid, the time integration and impacts on the ground took.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "mpm_stage/step/solver.hpp"
+
+namespace tailrun::mpm {
+
+struct LedgerRow {
+  double time = 0.0;                                         // s
+  double kinetic = 0.0, elastic = 0.0, gravitational = 0.0;  // J (per metre in plane strain)
+  WorkDone work;                                             // J, since the start
+  double residual = 0.0;                                     // J, positive: lost in the transfer
+  double mass = 0.0;                                         // kg
+  std::array<double, 3> momentum{};                          // N s
+  double angular_momentum = 0.0;                             // N m s, about the origin, z component
+  double total() const { return kinetic + elastic + gravitational; }
+};
+
+template <int Dim>
+class Ledger {
+ public:
+  explicit Ledger(std::array<double, Dim> gravity) : gravity_(gravity) {}
+
+  // Adds a row. The first one is the reference. Throws ComputationError when energy has grown by more than `limit`
+  // (share of the energy that has been set free so far) without work that explains it.
+  const LedgerRow& sample(double time, Solver<Dim>& solver, double limit);
+
+  const std::vector<LedgerRow>& rows() const { return rows_; }
+  // The energy that the motion so far has turned over, J: the scale for the residual.
+  double turnover() const;
+  void write(const std::filesystem::path& path) const;
+
+ private:
+  std::array<double, Dim> gravity_;
+  std::vector<LedgerRow> rows_;
+  double largest_kinetic_ = 0.0;
+};
+
+}  // namespace tailrun::mpm

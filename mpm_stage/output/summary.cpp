@@ -1,0 +1,138 @@
+#include "mpm_stage/output/summary.hpp"
+
+#include <fmt/format.h>
+#include <omp.h>
+#include <sys/resource.h>
+
+#include <cmath>
+
+#include "common/provenance.hpp"
+
+namespace tailrun::mpm {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string shape_name(ShapeName shape) {
+  switch (shape) {
+    case ShapeName::linear:
+      return "linear";
+    case ShapeName::quadratic:
+      return "quadratic B-spline";
+    case ShapeName::cubic:
+      return "cubic B-spline";
+    case ShapeName::gimp:
+      return "GIMP";
+  }
+  return "";
+}
+
+Json features(const Scene& scene) {
+  Json chosen = Json::array(), skipped = Json::array();
+  const auto say = [&](bool on, const std::string& what) { (on ? chosen : skipped).push_back(what); };
+  const SolverOptions& o = scene.solver;
+  chosen.push_back(fmt::format("{}-D kernels", scene.dimension));
+  chosen.push_back(shape_name(o.shape) + " shape functions");
+  chosen.push_back(o.transfer == TransferName::apic ? "APIC transfer"
+                                                    : fmt::format("FLIP/PIC transfer, FLIP share {}", o.flip_share));
+  bool pore = false, undrained = false, softening = false, rate = false, cutoff = false, average = false;
+  for (const auto& m : scene.materials) {
+    if (m.model == Model::rigid) continue;
+    chosen.push_back(fmt::format("material '{}': {}", m.name, model_name(m.model)));
+    pore = pore || m.pore_pressure != PorePressure::total;
+    undrained = undrained || m.pore_pressure == PorePressure::undrained;
+    softening = softening || m.softening.active;
+    rate = rate || m.rate.consistency > 0.0;
+    cutoff = cutoff || m.tension_cutoff >= 0.0;
+    average = average || (m.average_volumetric_strain && o.volumetric_average);
+  }
+  say(average, "averaged volumetric strain");
+  say(pore, "pore pressure");
+  say(undrained, "undrained pore pressure");
+  say(softening, "softening");
+  say(rate, "rate-dependent strength");
+  say(cutoff, "tension cut-off");
+  say(!scene.terrain.empty(), "terrain contact");
+  say(scene.walls.any_wall(), "walls of the grid");
+  say(scene.base.shaken(), "base shaking");
+  say(o.local_damping > 0.0, "local damping");
+  return {{"chosen", chosen}, {"skipped", skipped}};
+}
+
+}  // namespace
+
+template <int Dim>
+Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& record, const Ledger<Dim>& ledger,
+                  const FrontSeries<Dim>& front) {
+  const PhaseSeconds& s = solver.seconds();
+  const LedgerRow &first = ledger.rows().front(), &last = ledger.rows().back();
+  const FrontRow &f0 = front.rows().front(), &f1 = front.rows().back();
+  const double compute = s.grid + s.grid_to_particles + s.volumetric + s.stress + s.particles_to_grid + s.sort;
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  double outermost = f0.robust_front;
+  for (const auto& r : front.rows())
+    if (scene.output.front_sign * (r.robust_front - outermost) > 0.0) outermost = r.robust_front;
+
+  Json j;
+  j["title"] = scene.title;
+  j["version"] = version();
+  j["particles"] = solver.particles().count();
+  j["particles_removed"] = solver.removed().size();
+  j["removed_identities"] = solver.removed();
+  j["steps"] = record.steps;
+  j["simulated_time_s"] = record.time;
+  j["stop_reason"] = record.stop_reason;
+  j["dt_min_s"] = record.dt_min;
+  j["dt_mean_s"] = record.steps > 0 ? record.time / static_cast<double>(record.steps) : 0.0;
+  j["dt_max_s"] = record.dt_max;
+  j["front_position_m"] = f1.front;
+  j["robust_front_position_m"] = f1.robust_front;
+  j["runout_m"] = scene.output.front_sign * (f1.robust_front - f0.robust_front);
+  j["largest_runout_m"] = scene.output.front_sign * (outermost - f0.robust_front);
+  j["top_m"] = f1.top;
+  j["final_rms_speed_m_s"] = f1.rms_speed;
+  j["final_maximum_speed_m_s"] = f1.maximum_speed;
+  j["unbalanced_force_ratio_first_step"] = record.first_unbalanced;
+  j["largest_kinetic_energy_J"] = record.largest_kinetic;
+  j["energy"] = {{"kinetic_J", last.kinetic},
+                 {"elastic_J", last.elastic},
+                 {"gravitational_change_J", last.gravitational - first.gravitational},
+                 {"total_at_start_J", first.total()},
+                 {"plastic_J", last.work.plastic},
+                 {"friction_J", last.work.friction},
+                 {"damping_J", last.work.damping},
+                 {"external_J", last.work.external},
+                 {"removed_J", last.work.removed},
+                 {"residual_J", last.residual},
+                 {"turnover_J", ledger.turnover()},
+                 {"residual_ratio", ledger.turnover() > 0.0 ? last.residual / ledger.turnover() : 0.0}};
+  j["mass_kg"] = last.mass;
+  j["momentum_N_s"] = {last.momentum[0], last.momentum[1], last.momentum[2]};
+  j["wall_seconds"] = {{"total", record.wall_seconds},
+                       {"setup", record.setup_seconds},
+                       {"grid", s.grid},
+                       {"grid_to_particles", s.grid_to_particles},
+                       {"volumetric_average", s.volumetric},
+                       {"stress", s.stress},
+                       {"particles_to_grid", s.particles_to_grid},
+                       {"sort", s.sort},
+                       {"output_and_sampling", record.output_seconds}};
+  j["threads"] = omp_get_max_threads();
+  j["particle_steps_per_second"] = compute > 0.0 ? record.particle_steps / compute : 0.0;
+  j["sorts"] = solver.sorts();
+  j["occupied_blocks"] = solver.grid().occupied();
+  j["grid_bytes_per_particle"] =
+      static_cast<double>(solver.grid_bytes()) / static_cast<double>(solver.particles().count());
+  j["peak_memory_MB"] = static_cast<double>(usage.ru_maxrss) / 1024.0;
+  j["features"] = features(scene);
+  j["remarks"] = scene.remarks;
+  j["frames"] = record.frames;
+  return j;
+}
+
+template Json make_summary<2>(const Scene&, Solver<2>&, const RunRecord&, const Ledger<2>&, const FrontSeries<2>&);
+template Json make_summary<3>(const Scene&, Solver<3>&, const RunRecord&, const Ledger<3>&, const FrontSeries<3>&);
+
+}  // namespace tailrun::mpm
