@@ -80,6 +80,8 @@ void run(const RunOptions& options) {
   for (const auto& warning : assignment.warnings) spdlog::warn("{}", warning);
   ParticleSet particles = particle_set(snapshot, points, state, assignment);
   if (wanted.terrain.any()) particles.terrain = terrain_lines(snapshot, kept, wanted.terrain);
+  if (wanted.terrain.walls)
+    for (auto& line : wall_lines(snapshot, kept, wanted.terrain)) particles.terrain.push_back(std::move(line));
 
   // 4. Audit
   const Audit result = audit(

@@ -13,6 +13,7 @@ class CsvTable {
   // Throws InputError: missing file, empty file, rows of unequal length.
   explicit CsvTable(const std::filesystem::path& path);
 
+  const std::filesystem::path& path() const { return path_; }
   std::size_t rows() const { return rows_.size(); }
   // A column "name" or "name_unit" in SI units: m, m_s, m_s2, Pa, kPa, MPa, 1 and kg_m3 are known. Without a unit in
   // the header the values are taken as they are. Throws InputError naming line and column of what is not a number.

@@ -38,8 +38,7 @@ std::vector<std::size_t> rows_in_order(const CsvTable& table, const std::string&
   }
   for (const auto& [number, index] : mesh)
     if (row_of[index] == table.rows())
-      throw InputError(
-          fmt::format("result table has {} rows, but {} {} of the mesh has none", table.rows(), column, number));
+      throw InputError(fmt::format("{}: {} {} of the mesh has no row", table.path().string(), column, number));
   return row_of;
 }
 

@@ -64,6 +64,8 @@ void read_regions(const CaseNode& root, const std::vector<std::string>& region_n
     result.terrain.extend = true;
     result.terrain.downstream_to = *to;
   }
+  result.terrain.walls = node->boolean_or("walls", false);
+  result.terrain.wall_height = node->number_or("wall_height", "m", Range::non_negative(), 10.0);
   result.terrain.downstream_slope = node->number_or("downstream_slope", "deg", Range::open(-80.0, 80.0), 0.0);
 }
 

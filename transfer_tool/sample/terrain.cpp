@@ -38,30 +38,31 @@ NextNode bed_sides(const Snapshot& snapshot, const std::vector<bool>& kept, cons
   return next;
 }
 
-}  // namespace
-
-bool TerrainOptions::any() const {
-  return std::find(region.begin(), region.end(), true) != region.end();
+// Sides of kept elements behind which the mesh goes on without being kept: neither bed nor the open air.
+NextNode cut_sides(const Snapshot& snapshot, const std::vector<bool>& kept, const std::vector<bool>& is_bed) {
+  NextNode next;
+  for (const auto& side : element_sides(snapshot)) {
+    if (!kept[static_cast<std::size_t>(side.element)] || side.neighbour < 0) continue;
+    const auto other = static_cast<std::size_t>(side.neighbour);
+    if (!kept[other] && !is_bed[static_cast<std::size_t>(snapshot.region_id[other])]) next[side.from] = side.to;
+  }
+  return next;
 }
 
-std::vector<TerrainLine> terrain_lines(const Snapshot& snapshot, const std::vector<bool>& kept,
-                                       const TerrainOptions& options) {
-  NextNode next = bed_sides(snapshot, kept, options.region);
-  if (next.empty())
-    throw InputError("terrain: the named regions have no surface towards kept elements or the open air");
+// Points of the deformed geometry, one list per chain, each from a node that no side leads to.
+std::vector<std::vector<double>> chained(const Snapshot& snapshot, NextNode next) {
   std::set<std::int64_t> targets;
   for (const auto& [from, to] : next) targets.insert(to);
-
-  std::vector<TerrainLine> lines;
+  std::vector<std::vector<double>> chains;
   while (!next.empty()) {
     auto start =
         std::find_if(next.begin(), next.end(), [&](const auto& side) { return !targets.contains(side.first); });
     if (start == next.end()) start = next.begin();  // a closed loop, e.g. a bed that is an island
-    TerrainLine line;
+    std::vector<double> points;
     const auto add = [&](std::int64_t id) {
       const auto node = static_cast<std::size_t>(id);
       for (std::size_t k = 0; k < 2; ++k)
-        line.points.push_back(snapshot.position[2 * node + k] + snapshot.displacement[2 * node + k]);
+        points.push_back(snapshot.position[2 * node + k] + snapshot.displacement[2 * node + k]);
     };
     std::int64_t node = start->first;
     add(node);
@@ -70,11 +71,46 @@ std::vector<TerrainLine> terrain_lines(const Snapshot& snapshot, const std::vect
       next.erase(it);
       add(node);
     }
-    lines.push_back(std::move(line));
+    chains.push_back(std::move(points));
   }
-  std::sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.points[0] < b.points[0]; });
-  for (std::size_t i = 0; i < lines.size(); ++i)
-    lines[i].name = i == 0 ? options.name : fmt::format("{}_{}", options.name, i + 1);
+  std::sort(chains.begin(), chains.end(), [](const auto& a, const auto& b) { return a[0] < b[0]; });
+  return chains;
+}
+
+}  // namespace
+
+bool TerrainOptions::any() const {
+  return std::find(region.begin(), region.end(), true) != region.end();
+}
+
+std::vector<TerrainLine> wall_lines(const Snapshot& snapshot, const std::vector<bool>& kept,
+                                    const TerrainOptions& options) {
+  std::vector<TerrainLine> lines;
+  int upstream = 0, downstream = 0;
+  for (auto& points : chained(snapshot, cut_sides(snapshot, kept, options.region))) {
+    // Kept material on the left: an upstream cut is walked down, a downstream one up. The upper end goes on upwards, so
+    // that what heaves does not spill over.
+    const bool is_upstream = points[1] > points[points.size() - 1];
+    if (is_upstream)
+      points.insert(points.begin(), {points[0], points[1] + options.wall_height});
+    else
+      points.insert(points.end(), {points[points.size() - 2], points[points.size() - 1] + options.wall_height});
+    const std::string name = is_upstream ? "upstream_wall" : "downstream_wall";
+    const int number = is_upstream ? ++upstream : ++downstream;
+    lines.push_back({number == 1 ? name : fmt::format("{}_{}", name, number), std::move(points)});
+  }
+  return lines;
+}
+
+std::vector<TerrainLine> terrain_lines(const Snapshot& snapshot, const std::vector<bool>& kept,
+                                       const TerrainOptions& options) {
+  const NextNode sides = bed_sides(snapshot, kept, options.region);
+  if (sides.empty())
+    throw InputError("terrain: the named regions have no surface towards kept elements or the open air");
+  std::vector<TerrainLine> lines;
+  for (auto& points : chained(snapshot, sides))
+    lines.push_back(
+        {lines.empty() ? options.name : fmt::format("{}_{}", options.name, lines.size() + 1), std::move(points)});
 
   if (options.extend) {
     auto& points = lines.back().points;

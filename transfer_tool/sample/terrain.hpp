@@ -15,6 +15,8 @@ struct TerrainOptions {
   double downstream_to = 0.0;     // m: x to which the last point is extended when `extend` is set
   bool extend = false;            // extend downstream of the mesh
   double downstream_slope = 0.0;  // degrees, falling downstream
+  bool walls = false;             // also lines where the mesh is cut off, see wall_lines
+  double wall_height = 10.0;      // m by which these go on above the ground
   bool any() const;
 };
 
@@ -24,5 +26,10 @@ struct TerrainOptions {
 // or when the chain branches.
 std::vector<TerrainLine> terrain_lines(const Snapshot& snapshot, const std::vector<bool>& kept,
                                        const TerrainOptions& options);
+
+// Where a kept element borders on one that is left out and is not bed (free-field columns, the far side of the clip):
+// lines upstream_wall, downstream_wall, kept material on their left, for a smooth wall of the particle stage.
+std::vector<TerrainLine> wall_lines(const Snapshot& snapshot, const std::vector<bool>& kept,
+                                    const TerrainOptions& options);
 
 }  // namespace tailrun::transfer

@@ -1,0 +1,90 @@
+#include "transfer_tool/import/import_tables.hpp"
+
+#include <doctest/doctest.h>
+
+#include "common/error.hpp"
+#include "example_mesh.hpp"
+
+using namespace tailrun::transfer;
+
+namespace {
+
+// Two unit squares side by side, numbered from 11 and 5, in kPa and compression positive.
+struct Tables {
+  example::TemporaryFolder folder;
+  Tables() {
+    folder.write("nodes.csv",
+                 "node,x_m,y_m,lines\n11,0,0,base|left\n12,1,0,base\n13,2,0,base\n14,0,1,left|surface\n"
+                 "15,1,1,surface\n16,2,1,surface\n");
+    folder.write("quads.csv", "element,n1,n2,n3,n4,region,thickness_m\n5,11,12,15,14,sand,1\n6,12,13,16,15,clay,1\n");
+    folder.write("node_state.csv",
+                 "node,ux_m,uy_m,vx_m_s,vy_m_s,p_kPa\n16,0,0,1,0,3\n15,0.1,0,1,0,3\n14,0,0,1,0,3\n11,0,0,0.5,0,13\n"
+                 "12,0,0,0.5,0,13\n13,0,0,0.8,0,13\n");
+    folder.write("nodes_before.csv", "node,p_kPa\n11,10\n12,10\n13,10\n14,0\n15,0\n16,0\n");
+    folder.write("element_state.csv", "element,sxx_kPa,syy_kPa,sxy_kPa,gamma\n6,4,6,1,0.02\n5,40,60,-1,0.01\n");
+    folder.write("elements_before.csv", "element,sxx_kPa,syy_kPa,sxy_kPa\n5,50,100,0\n6,50,100,0\n");
+  }
+  tailrun::Snapshot snapshot(const std::string& more = {}) const {
+    tailrun::Provenance provenance;
+    return import_tables(tailrun::CaseFile(folder.write(
+                             "import.json",
+                             R"({"time": 3, "nodes": "nodes.csv", "quads": "quads.csv", "node_state": "node_state.csv",
+                "element_state": "element_state.csv", "initial_node_state": "nodes_before.csv",
+                "initial_element_state": "elements_before.csv",
+                "regions": {"sand": {"density": 1900}, "clay": {"density": 1700}})" +
+                                 more + "}")),
+                         provenance);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("tables in any order and unit become a snapshot in SI units, tension positive") {
+  const auto snapshot = Tables().snapshot();
+  CHECK(snapshot.time == 3.0);
+  CHECK(snapshot.region_names == std::vector<std::string>{"sand", "clay"});
+  CHECK(snapshot.quads == std::vector<std::int64_t>{0, 1, 4, 3, 1, 2, 5, 4});
+  CHECK(snapshot.effective_stress == std::vector<double>{-40e3, -60e3, -50e3, -1e3, -4e3, -6e3, -5e3, 1e3});
+  CHECK(snapshot.total_stress[1] == doctest::Approx(-68e3));
+  CHECK(snapshot.displacement[2 * 4] == 0.1);
+  CHECK(snapshot.density == std::vector<double>{1900.0, 1700.0});
+  CHECK(snapshot.initial_vertical_effective_stress == std::vector<double>{100e3, 100e3});
+  CHECK(snapshot.excess_pore_pressure_ratio[0] == doctest::Approx(0.03));
+  CHECK(snapshot.effective_stress_ratio[1] == doctest::Approx(0.94));
+  CHECK(snapshot.depth[0] == doctest::Approx(0.5));
+  CHECK(snapshot.shear_strain == std::vector<double>{0.01, 0.02});
+}
+
+TEST_CASE("named lines become edges, and the base's mean velocity is the base velocity") {
+  const auto snapshot = Tables().snapshot();
+  REQUIRE(snapshot.lines.size() == 3);
+  CHECK(snapshot.lines[0].name == "base");
+  CHECK(snapshot.lines[0].edges == std::vector<std::int64_t>{0, 1, 1, 2});
+  CHECK(snapshot.base_velocity[0] == doctest::Approx(0.6));
+}
+
+TEST_CASE("tension-positive tables keep their signs") {
+  const auto snapshot = Tables().snapshot(R"(, "normal_stress": "tension_positive")");
+  CHECK(snapshot.effective_stress[1] == 60e3);
+  CHECK(snapshot.effective_stress[3] == -1e3);
+}
+
+TEST_CASE("faults in the tables are named with file, line and column") {
+  const auto message = [](const char* name, const std::string& text) {
+    const Tables tables;
+    tables.folder.write(name, text);
+    return example::message_of<tailrun::InputError>([&] { tables.snapshot(); });
+  };
+  CHECK(message("quads.csv", "element,n1,n2,n3,n4,region\n5,11,12,15,99,sand\n").find("line 2, column 'n4'") !=
+        std::string::npos);
+  CHECK(message("quads.csv", "element,n1,n2,n3,n4,region\n5,14,15,12,11,sand\n").find("clockwise") !=
+        std::string::npos);
+  CHECK(message("quads.csv", "element,n1,n2,n3,n4,region\n5,11,12,15,14\n").find("line 2 has 5 cells") !=
+        std::string::npos);
+  CHECK(message("node_state.csv", "node,p_kPa\n11,1\n").find("node_state.csv: node 12 of the mesh has no row") !=
+        std::string::npos);
+  CHECK(message("node_state.csv", "node,ux_m\n11,1\n12,1\n13,1\n14,1\n15,1\n16,1\n").find("no column 'p'") !=
+        std::string::npos);
+  CHECK(message("element_state.csv", "element,sxx,syy,sxy\n5,1,nan,1\n6,1,1,1\n").find("found 'nan'") !=
+        std::string::npos);
+}
