@@ -1,6 +1,10 @@
-// Integration by error alone: the sub-steps of a strain increment are as long as an embedded Runge-Kutta pair of order
-// 3(2) allows, reversals, fabric records and the bounding-surface clip are followed sub-step by sub-step, so that the
-// answer does not depend on how the caller cuts its steps. The moduli are evaluated at every stage.
+// Integration by error alone. Two things make the rate equations stiff once soil flows: the cone is so thin that its
+// normal n turns to the strain direction within a strain of m p/G, and at the bounding surface the plastic modulus
+// ~ sqrt(B) has an infinite slope. Explicit schemes then need thousands of sub-steps. Here every sub-step is a
+// semi-implicit Euler step: stress, back-stress ratio, n and fabric implicit, which comes down to one scalar equation
+// as in the radial return for Armstrong-Frederick hardening; dilatancy and moduli of the step's start. One whole and
+// two half steps give the error and, extrapolated, second order (Deuflhard 1985). Reversals, fabric records and the
+// bounding-surface clip are followed sub-step by sub-step, so that the answer does not depend on the caller's steps.
 #pragma once
 
 #include "fem_stage/material/pm4_memory.hpp"
@@ -10,28 +14,129 @@
 namespace tailrun::fem {
 
 struct Pm4AdaptiveOptions {
-  double tolerance = 1e-4;      // relative error of stress (and of alpha and z/z_max) per sub-step
+  double tolerance = 1e-3;      // relative error of the un-extrapolated stress (and z/z_max) in one sub-step
   double stress_scale = 0.005;  // of p_A: errors are relative to at least this stress
-  double largest_growth = 4.0;  // of a sub-step over the one before
-  double smallest = 1e-10;      // strain; a sub-step this short is accepted as it is
-  double elastic_change = 0.1;  // largest relative change of p in one elastic sub-step
-  long most_substeps = 200000;  // in one update; beyond it the update reports failure
+  double largest_growth = 5.0;  // of a sub-step over the one before
+  double smallest = 1e-9;       // strain; a sub-step this short is accepted as it is
+  double elastic_change = 0.2;  // largest relative change of p in one elastic sub-step
+  long most_substeps = 100000;  // in one update; beyond it the update reports failure
 };
 
 namespace pm4_detail {
 
-inline Pm4Variables plus(const Pm4Variables& v, double f, const Pm4Variables& change) {
-  Pm4Variables out;
-  out.p = v.p + f * change.p;
-  out.s = v.s + f * change.s;
-  out.alpha = v.alpha + f * change.alpha;
-  out.z = v.z + f * change.z;
-  out.z_cum = v.z_cum + f * change.z_cum;
+inline double length(const PlaneStrain& strain) {
+  return std::sqrt(strain.volumetric * strain.volumetric + contract(strain.deviator, strain.deviator));
+}
+
+struct ImplicitStep {
+  Pm4Variables v;
+  Deviator n;
+  bool plastic = false;
+};
+
+// p after a plastic shear x: p = p_trial - x K D(p), in closed form because D(p) is piecewise linear.
+inline double implicit_pressure(const Pm4Dilatancy& D, double p_trial, double xK) {
+  const double p_free = p_trial - xK * D.free;
+  if (D.contraction) {
+    if (p_free >= D.two_p_min + D.p_fade || p_trial <= D.two_p_min) return p_trial <= D.two_p_min ? p_trial : p_free;
+    const double a = xK * D.free / D.p_fade;
+    return (p_trial + a * D.two_p_min) / (1.0 + a);
+  }
+  if (p_trial >= D.two_p_min) return std::max(p_free, std::min(p_trial, D.two_p_min));
+  const double a = 2.0 * xK * D.limit / D.two_p_min;
+  return std::max(p_free, (p_trial + a * D.two_p_min) / (1.0 + a));
+}
+
+// What a semi-implicit step takes from its start: one evaluation serves the whole step and the first half.
+struct StepStart {
+  Pm4Moduli moduli;
+  Deviator n;  // of the yield cone
+  Pm4Coefficients c;
+  double beta = 0.0;    // sqrt(1/2) (M_b - m): alpha^b = beta n
+  double p_star = 0.0;  // max(p, p_min)
+  double n_r = 0.0;     // n:r
+};
+
+template <class Law>
+StepStart step_start(const Law& law, const Pm4PointConstants& point, const Pm4State& state, const Pm4Variables& v,
+                     const Pm4Surfaces& surfaces, const Pm4Moduli& moduli, Deviator n) {
+  StepStart out;
+  const double z_peak = std::max(state.z_peak, sqrt_half * norm(v.z));
+  out.moduli = moduli;
+  out.n = n;
+  out.c = coefficients(law, point, state.memory, z_peak, v, surfaces, moduli, n);
+  out.beta = sqrt_half * (surfaces.M_b - law.m);
+  out.p_star = std::max(v.p, point.p_min);
+  out.n_r = contract(n, v.s) / v.p;
   return out;
 }
 
-inline double length(const PlaneStrain& strain) {
-  return std::sqrt(strain.volumetric * strain.volumetric + contract(strain.deviator, strain.deviator));
+// One semi-implicit Euler step over `strain` from `v`.
+template <class Law>
+ImplicitStep implicit_euler(const Law& law, const Pm4PointConstants& point, const Pm4Variables& v,
+                            const StepStart& start, const PlaneStrain& strain) {
+  ImplicitStep out;
+  const double G = start.moduli.G;
+  const double K = start.moduli.K;
+  const Pm4Coefficients& c = start.c;
+  const double floor = stress_floor_fraction * point.p_min;
+  const double cone = sqrt_half * law.m;
+  const double beta = start.beta;
+  const Deviator s_trial = v.s + 2.0 * G * strain.deviator;
+  const double p_elastic = v.p + (K + G / 3.0) * strain.volumetric;
+  // Where G/3 de_v pushes the stress out of the cone, the published loading index (with K) leaves it to the yield
+  // correction, which moves alpha; where it sinks the stress into the cone, the limit of small steps has K + G/3.
+  const bool correction_moves_alpha = start.n_r * strain.volumetric < 0.0 && c.B > 1e-3;
+  const double p_trial = correction_moves_alpha ? v.p + K * strain.volumetric : p_elastic;
+
+  out.v = v;
+  out.v.s = s_trial;
+  out.v.p = std::max(p_elastic, floor);
+  out.n = start.n;
+  const double p_start = std::max(p_trial, floor);
+  const double excess = norm(s_trial - p_start * v.alpha) - cone * p_start;
+  if (excess <= 0.0) return out;
+
+  // F(x) = |eta| - 2 G x - p w beta/(1 + w) - sqrt(1/2) m p = 0 with eta = s_trial - p alpha/(1 + w), n = eta/|eta|;
+  // w = x K_p/(p B) at the end of the step, where B has relaxed by 1/(1 + w): w^2 = g^2 (1 + w).
+  double w = 0.0;
+  double p = p_start;
+  Deviator n = start.n;
+  double alpha_n = contract(v.alpha, n);
+  const double resistance = 2.0 * G + c.H * std::sqrt(std::fabs(c.B)) - K * c.dilatancy.at(start.p_star) * start.n_r;
+  double x = excess / std::max(resistance, 0.1 * G);  // the explicit loading index
+  const double x_most = 2.0 * length(strain) + (excess + cone * p_start) / G;
+  const double hardening = c.H / start.p_star;
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    const double g2 = square(hardening * x) / std::max(std::fabs(beta - alpha_n), 1e-14);
+    w = 0.5 * (g2 + std::sqrt(g2 * (g2 + 4.0)));
+    p = std::max(implicit_pressure(c.dilatancy, p_trial, x * K), floor);
+    const double share = 1.0 / (1.0 + w);
+    const Deviator eta = s_trial - (p * share) * v.alpha;
+    const double eta_length = norm(eta);
+    n = (1.0 / std::max(eta_length, 1e-300)) * eta;
+    alpha_n = contract(v.alpha, n);
+    const double held = w * share * beta + cone;
+    const double F = eta_length - 2.0 * G * x - p * held;
+    if (std::fabs(F) <= 1e-7 * p) break;
+    // x dw/dx from w^2 = g^2 (1 + w), x dp/dx from the dilatancy as it acted.
+    const double x_dw = w > 0.0 ? 2.0 * g2 * (1.0 + w) / (2.0 * w - g2) : 0.0;
+    const double x_dp = p - p_start;
+    const double x_slope = -2.0 * G * x - p * x_dw * share * share * (beta - alpha_n) - x_dp * (share * alpha_n + held);
+    x = std::clamp(x - F * x / std::min(x_slope, -0.2 * G * x), 1e-3 * x, x_most);
+  }
+  out.plastic = true;
+  out.n = n;
+  out.v.s = s_trial - (2.0 * G * x) * n;
+  out.v.p = std::max(p + (p_elastic - p_trial), floor);
+  out.v.alpha = (1.0 / out.v.p) * out.v.s - cone * n;
+  if (c.fabric_rate > 0.0 && c.dilatancy.at(start.p_star) < 0.0) {
+    const double wz = c.fabric_rate * x;
+    const Deviator change = (-wz / (1.0 + wz)) * (point.z_max * n + v.z);
+    out.v.z = v.z + change;
+    out.v.z_cum = v.z_cum + sqrt_half * norm(change);
+  }
+  return out;
 }
 
 // Everything of one update that its sub-steps share.
@@ -52,12 +157,6 @@ struct Update {
   Pm4Surfaces surfaces_at(const Pm4Variables& v, double t) const {
     return law.surfaces(point, std::max(v.p, point.p_min), index_start + index_rate * t);
   }
-  Pm4Rates rates_at(const Pm4Variables& v, const Pm4Surfaces& surfaces) const {
-    const Pm4Moduli moduli = moduli_of(law, point, surfaces, v.p, v.s, v.z_cum);
-    const double z_peak = std::max(state.z_peak, sqrt_half * norm(v.z));
-    return rates(law, point, state.memory, z_peak, v, surfaces, moduli, strain);
-  }
-  Pm4Rates rates_at(const Pm4Variables& v, double t) const { return rates_at(v, surfaces_at(v, t)); }
   void note_reversal(Deviator n) {
     if (reversed(state.memory, state.v.alpha, n)) {
       record_reversal(point, state.v.p, state.v.alpha, state.v.z, n, state.memory);
@@ -70,28 +169,35 @@ struct Update {
 template <class Law>
 void elastic_substep(Update<Law>& u, const Pm4Moduli& moduli, bool on_surface) {
   Pm4Variables& v = u.state.v;
-  double step = 1.0 - u.done;
-  const double rate = std::fabs((moduli.K + moduli.G / 3.0) * u.strain.volumetric);
+  const double rest = 1.0 - u.done;
+  const double floor = stress_floor_fraction * u.point.p_min;
+  const double rate = (moduli.K + moduli.G / 3.0) * u.strain.volumetric;
   const double most = u.options.elastic_change * std::max(v.p, u.point.p_min);
-  if (rate * step > most) step = most / rate;
-  Pm4Variables half = elastic_change(moduli, u.strain);
-  half = plus(v, 0.5 * step, half);
-  const double t_half = u.done + 0.5 * step;
-  const Pm4Moduli midpoint =
-      moduli_of(u.law, u.point, u.surfaces_at(half, t_half), std::max(half.p, 0.0), half.s, v.z_cum);
-  const Pm4Variables change = elastic_change(midpoint, u.strain);
+  const bool at_floor = v.p <= floor && rate < 0.0;
+  double step = rest;
+  if (!at_floor && std::fabs(rate) * step > most) step = most / std::fabs(rate);
+  Pm4Variables change = elastic_change(moduli, u.strain);
+  if (std::fabs(rate) * step > 0.01 * v.p && !at_floor) {
+    const double p_half = std::max(v.p + 0.5 * step * change.p, floor);
+    const Deviator s_half = v.s + 0.5 * step * change.s;
+    Pm4Variables half = v;
+    half.p = p_half;
+    const Pm4Moduli midpoint =
+        moduli_of(u.law, u.point, u.surfaces_at(half, u.done + 0.5 * step), p_half, s_half, v.z_cum);
+    change = elastic_change(midpoint, u.strain);
+  }
+  if (at_floor) change.p = 0.0;
   const double exit = cone_exit(u.law.m, v.p, v.s, v.alpha, step * change.p, step * change.s, on_surface);
   const double taken = exit * step;
-  v.p += taken * change.p;
+  v.p = std::max(v.p + taken * change.p, floor);
   v.s = v.s + taken * change.s;
-  u.done = exit < 1.0 || step < 1.0 - u.done ? u.done + taken : 1.0;
-  if (hold_stress_floor(u.law, u.point, v)) return;
+  u.done = exit < 1.0 || step < rest ? u.done + taken : 1.0;
   u.note_reversal(cone_normal(v.p, v.s, v.alpha));
 }
 
 // A sub-step on the cone with error control.
 template <class Law>
-void plastic_substep(Update<Law>& u, const Pm4Rates& first) {
+void plastic_substep(Update<Law>& u, const StepStart& start) {
   const Pm4AdaptiveOptions& o = u.options;
   Pm4Variables& v = u.state.v;
   const double stress_scale = o.stress_scale * u.law.atmospheric_pressure;
@@ -100,40 +206,39 @@ void plastic_substep(Update<Law>& u, const Pm4Rates& first) {
     const double rest = 1.0 - u.done;
     const bool last = u.fraction >= rest;
     const double h = last ? rest : u.fraction;
-    const Pm4Variables at_half = plus(v, 0.5 * h, first.change);
-    double error = 1e10;
-    Pm4Variables next;
-    if (at_half.p > 0.0) {
-      const Pm4Variables k2 = u.rates_at(at_half, u.done + 0.5 * h).change;
-      const Pm4Variables at_three_quarters = plus(v, 0.75 * h, k2);
-      if (at_three_quarters.p > 0.0) {
-        const Pm4Variables k3 = u.rates_at(at_three_quarters, u.done + 0.75 * h).change;
-        next = plus(plus(plus(v, h * 2.0 / 9.0, first.change), h / 3.0, k2), h * 4.0 / 9.0, k3);
-        // Difference from the midpoint rule, which the same stages contain.
-        const Pm4Variables e =
-            plus(plus(plus(Pm4Variables{}, h * 2.0 / 9.0, first.change), -h * 2.0 / 3.0, k2), h * 4.0 / 9.0, k3);
-        const double size = std::max(std::sqrt(2.0 * next.p * next.p + contract(next.s, next.s)), stress_scale);
-        const double stress_error = (2.0 * e.p * e.p + contract(e.s, e.s)) / (size * size);
-        const double alpha_error = contract(e.alpha, e.alpha);
-        const double z_error = contract(e.z, e.z) / (u.point.z_max * u.point.z_max);
-        error = std::sqrt(std::max({stress_error, alpha_error, z_error}));
-      }
-    }
-    const bool smallest = h <= least;
-    double factor = std::min(0.85 * std::cbrt(o.tolerance / std::max(error, 1e-30)), o.largest_growth);
-    if (!(error <= o.tolerance) && !smallest) {
+    const PlaneStrain whole{h * u.strain.volumetric, h * u.strain.deviator};
+    const PlaneStrain half{0.5 * whole.volumetric, 0.5 * whole.deviator};
+    const ImplicitStep a = implicit_euler(u.law, u.point, v, start, whole);
+    const ImplicitStep b1 = implicit_euler(u.law, u.point, v, start, half);
+    const Pm4Surfaces surfaces = u.surfaces_at(b1.v, u.done + 0.5 * h);
+    const Pm4Moduli moduli = moduli_of(u.law, u.point, surfaces, b1.v.p, b1.v.s, b1.v.z_cum);
+    const StepStart middle = step_start(u.law, u.point, u.state, b1.v, surfaces, moduli, b1.n);
+    const ImplicitStep b = implicit_euler(u.law, u.point, b1.v, middle, half);
+    const double dp = b.v.p - a.v.p;
+    const Deviator ds = b.v.s - a.v.s;
+    const Deviator dz = b.v.z - a.v.z;
+    const double size_squared = std::max(2.0 * b.v.p * b.v.p + contract(b.v.s, b.v.s), stress_scale * stress_scale);
+    const double error = std::sqrt(std::max((2.0 * dp * dp + contract(ds, ds)) / size_squared,
+                                            contract(dz, dz) / (u.point.z_max * u.point.z_max)));
+    const double factor = std::min(0.9 * std::sqrt(o.tolerance / std::max(error, 1e-30)), o.largest_growth);
+    if (!(error <= o.tolerance) && h > least) {
       u.fraction = std::max(h * std::clamp(factor, 0.1, 0.9), least);
+      ++u.substeps;
       continue;
     }
-    if (!(error < 1e9)) {
-      // The shortest sub-step still runs into tension: the state goes to the stress floor.
-      next = v;
-      next.p = 0.0;
+    v = b.v;
+    if (a.plastic && b1.plastic && b.plastic) {
+      v.p = std::max(b.v.p + dp, stress_floor_fraction * u.point.p_min);
+      v.s = b.v.s + ds;
+      v.z = b.v.z + dz;
+      v.z_cum = std::max(2.0 * b.v.z_cum - a.v.z_cum, b1.v.z_cum);
+      const Deviator n = 2.0 * b.n - a.n;
+      v.alpha = (1.0 / v.p) * v.s - (sqrt_half * u.law.m / norm(n)) * n;
     }
-    v = next;
     u.done = last ? 1.0 : u.done + h;
-    if (!(last && factor > 1.0)) u.fraction = h * std::max(factor, 0.2);
-    u.fraction = std::max(u.fraction, least);
+    // A last sub-step cut short by the end of the increment says nothing against the longer one planned before.
+    const double next = h * std::max(factor, 0.2);
+    u.fraction = std::max({next, least, last && factor > 1.0 ? u.fraction : 0.0});
     return;
   }
 }
@@ -141,7 +246,7 @@ void plastic_substep(Update<Law>& u, const Pm4Rates& first) {
 }  // namespace pm4_detail
 
 // The state at the end of the strain increment (compression positive) from the committed one. Returns the number of
-// accepted sub-steps, or -1 when `most_substeps` was not enough or a number was not finite.
+// sub-steps, or -1 when `most_substeps` was not enough or a number was not finite.
 template <class Law>
 long integrate_adaptive(const Law& law, const Pm4PointConstants& point, const Pm4AdaptiveOptions& options,
                         const Pm4State& committed, const PlaneStrain& strain, Pm4State& trial) {
@@ -156,16 +261,16 @@ long integrate_adaptive(const Law& law, const Pm4PointConstants& point, const Pm
                             trial,
                             law.index0 + law.index_slope * committed.volumetric_strain,
                             law.index_slope * strain.volumetric};
-  u.fraction = std::min(1.0, committed.substep_strain / size);
+  u.fraction = committed.substep_strain / size;
   Pm4Variables& v = trial.v;
   Pm4Surfaces surfaces = u.surfaces_at(v, 0.0);
+  Pm4Moduli moduli = moduli_of(law, point, surfaces, v.p, v.s, v.z_cum);
   bool plastic = false;
   while (u.done < 1.0) {
     if (++u.substeps > options.most_substeps) return -1;
     const double f = yield_function(law.m, v.p, v.s, v.alpha);
     const bool on_surface = f >= -1e-7 * v.p;
     const Deviator n = cone_normal(v.p, v.s, v.alpha);
-    const Pm4Moduli moduli = moduli_of(law, point, surfaces, v.p, v.s, v.z_cum);
     const double n_r = contract(n, v.s) / v.p;
     const double outward =
         2.0 * moduli.G * contract(n, strain.deviator) - n_r * (moduli.K + moduli.G / 3.0) * strain.volumetric;
@@ -173,18 +278,17 @@ long integrate_adaptive(const Law& law, const Pm4PointConstants& point, const Pm
       pm4_detail::elastic_substep(u, moduli, on_surface);
     } else {
       u.note_reversal(n);
-      pm4_detail::plastic_substep(u, u.rates_at(v, surfaces));
+      pm4_detail::plastic_substep(u, pm4_detail::step_start(law, point, trial, v, surfaces, moduli, n));
       plastic = true;
       trial.z_peak = std::max(trial.z_peak, sqrt_half * norm(v.z));
-      if (!hold_stress_floor(law, point, v)) recentre_cone(law, v);
     }
     surfaces = u.surfaces_at(v, u.done);
     clip_to_bounding_surface(law, point, surfaces.M_b, v);
+    moduli = moduli_of(law, point, surfaces, v.p, v.s, v.z_cum);
     if (!std::isfinite(v.p + v.s.d + v.s.xy + v.alpha.d + v.alpha.xy + v.z.d + v.z.xy)) return -1;
   }
   if (plastic) trial.substep_strain = u.fraction * size;
   trial.volumetric_strain += strain.volumetric;
-  const Pm4Moduli moduli = moduli_of(law, point, surfaces, v.p, v.s, v.z_cum);
   trial.G = moduli.G;
   trial.K = moduli.K;
   return u.substeps;
