@@ -39,7 +39,7 @@ struct PlaneTrial {
   double p, q, r, zz, shear_rate_squared;
 };
 
-inline PlaneTrial elastic_trial(const MaterialConstants& k, double gxx, double gxy, double gyx, double gyy,
+[[gnu::always_inline]] inline PlaneTrial elastic_trial(const MaterialConstants& k, double gxx, double gxy, double gyx, double gyy,
                                 double trace, double sxx, double syy, double szz, double sxy) {
   // Hughes & Winget: Q = (I - W/2)^-1 (I + W/2) turns by theta with tan(theta / 2) = w / 2; the deviator turns by 2
   // theta.
@@ -82,11 +82,14 @@ struct PlasticWork {
   double work, strain;
 };
 
-inline PlasticWork plastic_work(const MaterialConstants& k, Principal t, Principal s) {
+[[gnu::always_inline]] inline PlasticWork plastic_work(double shear_flexibility, double volume_flexibility, Principal t,
+                                                       Principal s) {
   const double d1 = t.s1 - s.s1, d2 = t.s2 - s.s2, d3 = t.s3 - s.s3;
-  const double mean = (d1 + d2 + d3) / 3.0, g = 0.5 / k.mu, b = mean / (3.0 * k.bulk);
-  const double e1 = g * (d1 - mean), e2 = g * (d2 - mean), e3 = g * (d3 - mean);
-  return {s.s1 * (e1 + b) + s.s2 * (e2 + b) + s.s3 * (e3 + b), std::sqrt(2.0 / 3.0 * (e1 * e1 + e2 * e2 + e3 * e3))};
+  const double mean = (d1 + d2 + d3) * (1.0 / 3.0), b = mean * volume_flexibility;
+  const double e1 = shear_flexibility * (d1 - mean), e2 = shear_flexibility * (d2 - mean);
+  const double e3 = shear_flexibility * (d3 - mean);
+  return {s.s1 * (e1 + b) + s.s2 * (e2 + b) + s.s3 * (e3 + b),
+          std::sqrt(2.0 / 3.0 * (e1 * e1 + e2 * e2 + e3 * e3))};
 }
 
 // Frictional: Mohr-Coulomb, else Tresca. The in-plane principal stresses p +- R and zz are sorted without branches and
@@ -95,6 +98,8 @@ template <bool Frictional, bool Softens, bool Rate, bool Cutoff>
 double elasto_plastic(const MaterialConstants& k, const Columns& c, std::size_t n, double dt) {
   double dissipated = 0.0;
   const double per_dt = dt > 0.0 ? 1.0 / dt : 0.0;
+  const MohrCoulombSurface surface = Frictional ? mohr_coulomb_surface(k, k.sin_phi) : MohrCoulombSurface{};
+  const double shear_flexibility = 0.5 / k.mu, volume_flexibility = 1.0 / (3.0 * k.bulk);
   const auto body = [&](std::size_t i) {
     const PlaneTrial t =
         elastic_trial(k, c.gxx[i], c.gxy[i], c.gyx[i], c.gyy[i], c.trace[i], c.sxx[i], c.syy[i], c.szz[i], c.sxy[i]);
@@ -110,13 +115,13 @@ double elasto_plastic(const MaterialConstants& k, const Columns& c, std::size_t 
     if constexpr (Rate) cohesion += rate_strength(k, std::sqrt(t.shear_rate_squared) * per_dt);
     Principal s;
     if constexpr (Frictional)
-      s = return_mohr_coulomb(k, sin_phi, cohesion, trial);
+      s = return_mohr_coulomb(Softens ? mohr_coulomb_surface(k, sin_phi) : surface, cohesion, trial);
     else
       s = return_tresca(cohesion, trial);
     if constexpr (Cutoff) {
       if (s.s1 > k.tension) s = return_tension_cutoff(k, sin_phi, cohesion, k.tension, trial);
     }
-    const PlasticWork w = plastic_work(k, trial, s);
+    const PlasticWork w = plastic_work(shear_flexibility, volume_flexibility, trial, s);
     const bool z_first = z > a, z_last = z < b;
     const double a1 = z_first ? s.s2 : s.s1, b1 = z_last ? s.s2 : s.s3;
     const double z1 = z_first ? s.s1 : (z_last ? s.s3 : s.s2);
