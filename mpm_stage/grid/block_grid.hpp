@@ -22,7 +22,7 @@ constexpr int power(int base, int exponent) {
 
 template <int Dim>
 struct Block {
-  static constexpr int cells = 4;
+  static constexpr int cells = Dim == 2 ? 8 : 4;
   static constexpr int nodes = power(cells, Dim);
   static constexpr int neighbours = power(3, Dim);  // itself included, x fastest
 };

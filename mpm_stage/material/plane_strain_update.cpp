@@ -39,8 +39,9 @@ struct PlaneTrial {
   double p, q, r, zz, shear_rate_squared;
 };
 
-[[gnu::always_inline]] inline PlaneTrial elastic_trial(const MaterialConstants& k, double gxx, double gxy, double gyx, double gyy,
-                                double trace, double sxx, double syy, double szz, double sxy) {
+[[gnu::always_inline]] inline PlaneTrial elastic_trial(const MaterialConstants& k, double gxx, double gxy, double gyx,
+                                                       double gyy, double trace, double sxx, double syy, double szz,
+                                                       double sxy) {
   // Hughes & Winget: Q = (I - W/2)^-1 (I + W/2) turns by theta with tan(theta / 2) = w / 2; the deviator turns by 2
   // theta.
   const double t = 0.25 * (gyx - gxy), tt = t * t, r1 = 1.0 / (1.0 + tt);
@@ -88,8 +89,7 @@ struct PlasticWork {
   const double mean = (d1 + d2 + d3) * (1.0 / 3.0), b = mean * volume_flexibility;
   const double e1 = shear_flexibility * (d1 - mean), e2 = shear_flexibility * (d2 - mean);
   const double e3 = shear_flexibility * (d3 - mean);
-  return {s.s1 * (e1 + b) + s.s2 * (e2 + b) + s.s3 * (e3 + b),
-          std::sqrt(2.0 / 3.0 * (e1 * e1 + e2 * e2 + e3 * e3))};
+  return {s.s1 * (e1 + b) + s.s2 * (e2 + b) + s.s3 * (e3 + b), std::sqrt(2.0 / 3.0 * (e1 * e1 + e2 * e2 + e3 * e3))};
 }
 
 // Frictional: Mohr-Coulomb, else Tresca. The in-plane principal stresses p +- R and zz are sorted without branches and

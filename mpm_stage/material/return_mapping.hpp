@@ -21,10 +21,10 @@ struct Principal {
 // What the return needs of elasticity, friction and dilation, with every quotient worked out beforehand: friction that
 // does not soften costs no division per particle.
 struct MohrCoulombSurface {
-  double k, root2;            // root2 = 2 sqrt(k)
-  double apex;                // apex stress per unit of s_c
-  double D1, D2, D3;          // D b over a D b
-  double a1, a23, b12, b3;    // coordinates of a stress along the two edges
+  double k, root2;          // root2 = 2 sqrt(k)
+  double apex;              // apex stress per unit of s_c
+  double D1, D2, D3;        // D b over a D b
+  double a1, a23, b12, b3;  // coordinates of a stress along the two edges
 };
 
 [[gnu::always_inline]] inline MohrCoulombSurface mohr_coulomb_surface(const MaterialConstants& e, double sin_phi) {
@@ -56,7 +56,8 @@ struct MohrCoulombSurface {
   const double p1 = t.s1 - f * e.D1, p2 = t.s2 - f * e.D2, p3 = t.s3 - f * e.D3;
   const double apex = strength * e.apex;
   const double d1 = t.s1 - apex, d2 = t.s2 - apex, d3 = t.s3 - apex;
-  // Where the plane's return is not ordered, the edge that the trial leans towards decides; beyond its end lies the apex.
+  // Where the plane's return is not ordered, the edge that the trial leans towards decides; beyond its end lies the
+  // apex.
   const double ta = std::min(e.a1 * d1 + e.a23 * (d2 + d3), 0.0), tb = std::min(e.b12 * (d1 + d2) + e.b3 * d3, 0.0);
   const bool lower = p2 - p3 < p1 - p2;
   const double along1 = lower ? ta : tb, along2 = lower ? e.k * ta : tb;

@@ -62,9 +62,8 @@ double return_to_yield(const MaterialConstants& k, double strength, double rate,
     sin_phi = softened_sin_phi(k, share);
   }
   if (k.consistency > 0.0) cohesion += rate_strength(k, rate);
-  Principal r = k.model == Model::mohr_coulomb
-                    ? return_mohr_coulomb(mohr_coulomb_surface(k, sin_phi), cohesion, trial)
-                    : return_tresca(cohesion, trial);
+  Principal r = k.model == Model::mohr_coulomb ? return_mohr_coulomb(mohr_coulomb_surface(k, sin_phi), cohesion, trial)
+                                               : return_tresca(cohesion, trial);
   if (k.tension >= 0.0 && r.s1 > k.tension) r = return_tension_cutoff(k, sin_phi, cohesion, k.tension, trial);
   const Eigen::Vector3d after(r.s3, r.s2, r.s1), lost = v - after;
   if (lost.squaredNorm() == 0.0) return 0.0;

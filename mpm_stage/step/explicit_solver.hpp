@@ -161,7 +161,7 @@ class ExplicitSolver final : public Solver<Dim> {
 
   AlignedVector<Vec4> tiles_, forces_;     // per occupied block
   AlignedVector<Vec4> velocity_, change_;  // per active block
-  std::vector<AveragedNode> averaged_tiles_;
+  AlignedVector<AveragedNode> averaged_tiles_;
   std::vector<double> averaged_;
   std::vector<Gap> gap_tiles_;
   std::vector<GridSums<Dim>> grid_sums_;
@@ -267,8 +267,7 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::update_grid(double dt, const std::
         if (options_.local_damping > 0.0)
           sums.damping += m * apply_local_damping<Dim>(options_.local_damping, dt, before, v);
       const std::array<double, Dim> pushed = v;
-      if (contact && contact[n].count > 0)
-        apply_ground<Dim>(contact[n], m, std::max(0.0, gap[n].value) / dt, v, sums);
+      if (contact && contact[n].count > 0) apply_ground<Dim>(contact[n], m, std::max(0.0, gap[n].value) / dt, v, sums);
       if (wall_nodes_.any) {
         std::array<int, Dim> node;
         for (int d = 0, k = n; d < Dim; ++d, k /= B) node[d] = grid_.active_index(a)[d] * B + k % B;
@@ -362,7 +361,7 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::average() {
     AveragedNode node[block_nodes];
     gather_tiles<Dim, Shape>(grid_, a, averaged_tiles_.data(), node);
     for (int n = 0; n < block_nodes; ++n)
-      averaged_[a * block_nodes + n] = node[n].volume > 0.0 ? node[n].sum / node[n].volume : 0.0;
+      averaged_[a * block_nodes + n] = node[n][1] > 0.0 ? node[n][0] / node[n][1] : 0.0;
   }
   add_time(seconds_.volumetric, since);
 }

@@ -67,7 +67,8 @@ inline void apply_walls(const WallNodes<Dim>& walls, const std::array<int, Dim>&
 
 // `allowed` m/s: contact_gap.hpp's gap over the time step.
 template <int Dim>
-inline void apply_ground(const NodeContact& contact, double mass, double allowed, std::array<double, Dim>& v, GridSums<Dim>& sums) {
+inline void apply_ground(const NodeContact& contact, double mass, double allowed, std::array<double, Dim>& v,
+                         GridSums<Dim>& sums) {
   // Two surfaces of a corner are taken in turn, twice, so that neither is left pushed through.
   const int rounds = contact.count > 1 ? 2 : 1;
   for (int r = 0; r < rounds; ++r)

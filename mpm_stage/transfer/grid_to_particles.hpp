@@ -25,7 +25,7 @@ inline Vec4 node_velocity(const double* v) {
 
 // Midpoint gradient G = A (I + A/2)^-1 of the increment F = I + A, A = dt grad v: sym(G) is a second-order strain
 // increment that vanishes in any rigid rotation, skew(G) the Hughes & Winget (1980) rotation.
-inline std::array<double, 4> midpoint_gradient(const std::array<double, 4>& A) {
+[[gnu::always_inline]] inline std::array<double, 4> midpoint_gradient(const std::array<double, 4>& A) {
   const double det = A[0] * A[3] - A[1] * A[2], r = 1.0 / (1.0 + 0.5 * (A[0] + A[3]) + 0.25 * det);
   return {(A[0] + 0.5 * det) * r, A[1] * r, A[2] * r, (A[3] + 0.5 * det) * r};
 }
@@ -71,7 +71,15 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
   double* __restrict vx = P.velocity[0].data();
   double* __restrict vy = P.velocity[1].data();
   const double h1 = s.inverse_cell, dt = s.dt, A0 = dt * h1, C0 = Shape::apic * h1;
-  double far = 0.0, fast = 0.0, kinetic = 0.0;
+  double* __restrict gxx = P.gradient[0].data();
+  double* __restrict gxy = P.gradient[1].data();
+  double* __restrict gyx = P.gradient[2].data();
+  double* __restrict gyy = P.gradient[3].data();
+  double* __restrict cxx = Flip ? nullptr : P.affine[0].data();
+  double* __restrict cxy = Flip ? nullptr : P.affine[1].data();
+  double* __restrict cyx = Flip ? nullptr : P.affine[2].data();
+  double* __restrict cyy = Flip ? nullptr : P.affine[3].data();
+  double far = 0.0;
   for (std::size_t p = begin; p < end; ++p) {
     double wx[S], dx[S], mx[S], wy[S], dy[S], my[S];
     const int i0 = Shape::evaluate((x[p] - corner[0]) * h1, wx, dx, mx);
@@ -91,9 +99,10 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
               Vec4{dy[j], dy[j], my[j], my[j]};
       if constexpr (!Flip && Shape::apic > 0.0) cx += moment * Vec2{wy[j], wy[j]};
     }
-    const std::array<double, 4> A = {A0 * v_vx[2], A0 * vy_c[0], A0 * v_vx[3], A0 * vy_c[1]};
-    const auto G = midpoint_gradient(A);
-    for (int k = 0; k < 4; ++k) P.gradient[k][p] = G[k];
+    gxx[p] = A0 * v_vx[2];
+    gxy[p] = A0 * vy_c[0];
+    gyx[p] = A0 * v_vx[3];
+    gyy[p] = A0 * vy_c[1];
     if constexpr (Flip) {
       Vec4 dv = {};
       const Vec4* c = change + j0 * T + i0;
@@ -105,24 +114,43 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
       vx[p] = v_vx[0];
       vy[p] = v_vx[1];
       if constexpr (Shape::apic > 0.0) {
-        P.affine[0][p] = C0 * cx[0];
-        P.affine[1][p] = C0 * vy_c[2];
-        P.affine[2][p] = C0 * cx[1];
-        P.affine[3][p] = C0 * vy_c[3];
+        cxx[p] = C0 * cx[0];
+        cxy[p] = C0 * vy_c[2];
+        cyx[p] = C0 * cx[1];
+        cyy[p] = C0 * vy_c[3];
       } else {
-        P.affine[0][p] = h1 * v_vx[2];
-        P.affine[1][p] = h1 * vy_c[0];
-        P.affine[2][p] = h1 * v_vx[3];
-        P.affine[3][p] = h1 * vy_c[1];
+        cxx[p] = h1 * v_vx[2];
+        cxy[p] = h1 * vy_c[0];
+        cyx[p] = h1 * v_vx[3];
+        cyy[p] = h1 * vy_c[1];
       }
     }
-    const double ux = dt * v_vx[0], uy = dt * v_vx[1];
-    x[p] += ux;
-    y[p] += uy;
-    far = std::max(far, std::max(std::fabs(ux), std::fabs(uy)));
+    if constexpr (Flip) {
+      const double ux = dt * v_vx[0], uy = dt * v_vx[1];
+      x[p] += ux;
+      y[p] += uy;
+      far = std::max(far, std::max(std::fabs(ux), std::fabs(uy)));
+    }
+  }
+  // What is the same for every particle, as vector code: motion, midpoint gradient and the extremes.
+  double fast = 0.0, kinetic = 0.0;
+  const double* __restrict mass = P.mass.data();
+#pragma omp simd reduction(max : far, fast) reduction(+ : kinetic)
+  for (std::size_t p = begin; p < end; ++p) {
+    const double ux = dt * vx[p], uy = dt * vy[p];
+    if constexpr (!Flip) {
+      x[p] += ux;
+      y[p] += uy;
+      far = std::max(far, std::max(std::fabs(ux), std::fabs(uy)));
+    }
+    const auto G = midpoint_gradient(std::array<double, 4>{gxx[p], gxy[p], gyx[p], gyy[p]});
+    gxx[p] = G[0];
+    gxy[p] = G[1];
+    gyx[p] = G[2];
+    gyy[p] = G[3];
     const double speed = vx[p] * vx[p] + vy[p] * vy[p];
     fast = std::max(fast, speed);
-    kinetic += 0.5 * P.mass[p] * speed;
+    kinetic += 0.5 * mass[p] * speed;
   }
   return {far, fast, kinetic};
 }

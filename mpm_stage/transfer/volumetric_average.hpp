@@ -11,15 +11,8 @@
 
 namespace tailrun::mpm {
 
-// Volume-weighted increment and volume at a node.
-struct AveragedNode {
-  double sum = 0.0, volume = 0.0;
-  AveragedNode& operator+=(const AveragedNode& o) {
-    sum += o.sum;
-    volume += o.volume;
-    return *this;
-  }
-};
+// Volume-weighted increment and volume at a node, as one value of two lanes.
+using AveragedNode = double __attribute__((vector_size(16)));
 
 template <int Dim>
 inline double trace_of(const Particles<Dim>& P, std::size_t p) {
@@ -61,11 +54,10 @@ void scatter_volumetric(const Particles<Dim>& P, std::size_t begin, std::size_t 
                         const std::array<double, Dim>& corner, double h1, AveragedNode* tile) {
   for (std::size_t p = begin; p < end; ++p) {
     const LinearCell<Dim, Tile<Dim, Shape>::side> cell(P, p, corner, h1);
-    const double v = P.volume[p], t = trace_of(P, p);
+    const double v = P.volume[p];
+    const AveragedNode give = {v * trace_of(P, p), v};
     for (int n = 0; n < (1 << Dim); ++n) {
-      AveragedNode& node = tile[cell.first + cell.offset(n)];
-      node.sum += cell.weight[n] * v * t;
-      node.volume += cell.weight[n] * v;
+      tile[cell.first + cell.offset(n)] += AveragedNode{cell.weight[n], cell.weight[n]} * give;
     }
   }
 }
