@@ -17,12 +17,16 @@ struct Pm4AdaptiveOptions {
   double tolerance = 1e-3;      // relative error of the un-extrapolated stress (and z/z_max) in one sub-step
   double stress_scale = 0.005;  // of p_A: errors are relative to at least this stress
   double largest_growth = 5.0;  // of a sub-step over the one before
+  double discontinuity = 30.0;  // times the tolerance, where the rates jump and shorter sub-steps do not help
   double smallest = 1e-9;       // strain; a sub-step this short is accepted as it is
   double elastic_change = 0.2;  // largest relative change of p in one elastic sub-step
-  long most_substeps = 100000;  // in one update; beyond it the update reports failure
+  long full_accuracy = 300;    // sub-steps of one update; beyond it the tolerance grows with the square of their number
+  long most_substeps = 20000;  // in one update; beyond it the update reports failure
 };
 
 namespace pm4_detail {
+
+constexpr double fading_distance = 0.02;  // of alpha from the bounding surface
 
 inline double length(const PlaneStrain& strain) {
   return std::sqrt(strain.volumetric * strain.volumetric + contract(strain.deviator, strain.deviator));
@@ -85,9 +89,10 @@ ImplicitStep implicit_euler(const Law& law, const Pm4PointConstants& point, cons
   const Deviator s_trial = v.s + 2.0 * G * strain.deviator;
   const double p_elastic = v.p + (K + G / 3.0) * strain.volumetric;
   // Where G/3 de_v pushes the stress out of the cone, the published loading index (with K) leaves it to the yield
-  // correction, which moves alpha; where it sinks the stress into the cone, the limit of small steps has K + G/3.
-  const bool correction_moves_alpha = start.n_r * strain.volumetric < 0.0 && c.B > 1e-3;
-  const double p_trial = correction_moves_alpha ? v.p + K * strain.volumetric : p_elastic;
+  // correction, which moves alpha; where it sinks the stress into the cone, the limit of small steps has K + G/3. Near
+  // the bounding surface alpha has nowhere to go, so the former fades into the latter.
+  const double left_to_alpha = start.n_r * strain.volumetric < 0.0 ? std::clamp(c.B / fading_distance, 0.0, 1.0) : 0.0;
+  const double p_trial = p_elastic - left_to_alpha * G / 3.0 * strain.volumetric;
 
   out.v = v;
   out.v.s = s_trial;
@@ -95,7 +100,13 @@ ImplicitStep implicit_euler(const Law& law, const Pm4PointConstants& point, cons
   out.n = start.n;
   const double p_start = std::max(p_trial, floor);
   const double excess = norm(s_trial - p_start * v.alpha) - cone * p_start;
-  if (excess <= 0.0) return out;
+  if (excess <= 0.0) {
+    if (left_to_alpha > 0.0 && yield_function(law.m, out.v.p, out.v.s, out.v.alpha) > 0.0) {
+      out.n = cone_normal(out.v.p, out.v.s, out.v.alpha);
+      recentre_cone(law, out.v);
+    }
+    return out;
+  }
 
   // F(x) = |eta| - 2 G x - p w beta/(1 + w) - sqrt(1/2) m p = 0 with eta = s_trial - p alpha/(1 + w), n = eta/|eta|;
   // w = x K_p/(p B) at the end of the step, where B has relaxed by 1/(1 + w): w^2 = g^2 (1 + w).
@@ -165,9 +176,10 @@ struct Update {
 };
 
 // An elastic sub-step from inside the cone, or from the cone into it: to the cone's far side, or as far as the modulus
-// stays nearly the same. The modulus is the midpoint's, so the sub-step is of second order in the change of p.
+// stays nearly the same. The modulus is the midpoint's, so the sub-step is of second order in the change of p. Returns
+// false, and does nothing, when with that modulus the path leaves the cone at once.
 template <class Law>
-void elastic_substep(Update<Law>& u, const Pm4Moduli& moduli, bool on_surface) {
+bool elastic_substep(Update<Law>& u, const Pm4Moduli& moduli, bool on_surface) {
   Pm4Variables& v = u.state.v;
   const double rest = 1.0 - u.done;
   const double floor = stress_floor_fraction * u.point.p_min;
@@ -188,11 +200,13 @@ void elastic_substep(Update<Law>& u, const Pm4Moduli& moduli, bool on_surface) {
   }
   if (at_floor) change.p = 0.0;
   const double exit = cone_exit(u.law.m, v.p, v.s, v.alpha, step * change.p, step * change.s, on_surface);
+  if (exit == 0.0) return false;
   const double taken = exit * step;
   v.p = std::max(v.p + taken * change.p, floor);
   v.s = v.s + taken * change.s;
   u.done = exit < 1.0 || step < rest ? u.done + taken : 1.0;
   u.note_reversal(cone_normal(v.p, v.s, v.alpha));
+  return true;
 }
 
 // A sub-step on the cone with error control.
@@ -202,6 +216,11 @@ void plastic_substep(Update<Law>& u, const StepStart& start) {
   Pm4Variables& v = u.state.v;
   const double stress_scale = o.stress_scale * u.law.atmospheric_pressure;
   const double least = std::min(1.0, o.smallest / u.strain_length);
+  // An increment far outside what the error control was made for must end, too.
+  const double tolerance =
+      std::min(0.1, o.tolerance * std::max(1.0, square(static_cast<double>(u.substeps) / o.full_accuracy)));
+  double h_before = 0.0;
+  double error_before = 0.0;
   for (;;) {
     const double rest = 1.0 - u.done;
     const bool last = u.fraction >= rest;
@@ -220,9 +239,15 @@ void plastic_substep(Update<Law>& u, const StepStart& start) {
     const double size_squared = std::max(2.0 * b.v.p * b.v.p + contract(b.v.s, b.v.s), stress_scale * stress_scale);
     const double error = std::sqrt(std::max((2.0 * dp * dp + contract(ds, ds)) / size_squared,
                                             contract(dz, dz) / (u.point.z_max * u.point.z_max)));
-    const double factor = std::min(0.9 * std::sqrt(o.tolerance / std::max(error, 1e-30)), o.largest_growth);
-    if (!(error <= o.tolerance) && h > least) {
-      u.fraction = std::max(h * std::clamp(factor, 0.1, 0.9), least);
+    const double factor = std::min(0.9 * std::sqrt(tolerance / std::max(error, 1e-30)), o.largest_growth);
+    // Dilatancy jumps where contraction turns into dilation below 2 p_min; a state that slides along the jump has an
+    // error proportional to h (not h^2) that does not accumulate.
+    const bool jump = h_before > 0.0 && error <= o.discontinuity * tolerance &&
+                      error * h_before * std::sqrt(std::sqrt(h_before)) > error_before * h * std::sqrt(std::sqrt(h));
+    if (!(error <= tolerance) && !jump && h > least) {
+      u.fraction = std::max(h * std::clamp(factor, 0.1, 0.5), least);
+      h_before = h;
+      error_before = error;
       ++u.substeps;
       continue;
     }
@@ -237,7 +262,7 @@ void plastic_substep(Update<Law>& u, const StepStart& start) {
     }
     u.done = last ? 1.0 : u.done + h;
     // A last sub-step cut short by the end of the increment says nothing against the longer one planned before.
-    const double next = h * std::max(factor, 0.2);
+    const double next = h * (jump ? 1.0 : std::max(factor, 0.2));
     u.fraction = std::max({next, least, last && factor > 1.0 ? u.fraction : 0.0});
     return;
   }
@@ -274,9 +299,8 @@ long integrate_adaptive(const Law& law, const Pm4PointConstants& point, const Pm
     const double n_r = contract(n, v.s) / v.p;
     const double outward =
         2.0 * moduli.G * contract(n, strain.deviator) - n_r * (moduli.K + moduli.G / 3.0) * strain.volumetric;
-    if (!on_surface || outward < 0.0) {
-      pm4_detail::elastic_substep(u, moduli, on_surface);
-    } else {
+    const bool elastic = (!on_surface || outward < 0.0) && pm4_detail::elastic_substep(u, moduli, on_surface);
+    if (!elastic) {
       u.note_reversal(n);
       pm4_detail::plastic_substep(u, pm4_detail::step_start(law, point, trial, v, surfaces, moduli, n));
       plastic = true;

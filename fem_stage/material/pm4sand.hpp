@@ -63,7 +63,8 @@ struct Pm4SandLaw : Pm4Law {
   // xi_R, M_b, M_d at p* (already >= p_min) and the current relative density.
   Pm4Surfaces surfaces(const Pm4PointConstants&, double p_star, double relative_density) const {
     Pm4Surfaces out;
-    out.xi = R / (Q_shifted - std::log(p_star)) - relative_density;
+    // Bolton's expression has a pole at the crushing pressure (p_A e^Q/100, tens of MPa): stop short of it.
+    out.xi = R / std::max(Q_shifted - std::log(p_star), 0.5) - relative_density;
     const bool loose = out.xi > 0.0;
     out.M_b = M * std::exp(-(loose ? n_b_loose : n_b_dense) * out.xi);
     out.M_d = M * std::exp((loose ? n_d_loose : n_d_dense) * out.xi);
