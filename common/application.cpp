@@ -35,6 +35,8 @@ void add_common_options(CLI::App& app) {
         spdlog::set_level(spdlog::level::warn);
       },
       "No progress and no messages other than warnings and errors");
+  app.add_flag_callback(
+      "--verbose", [] { spdlog::set_level(spdlog::level::debug); }, "Say more: steps that were cut, and why");
   app.add_option_function<int>(
          "--threads", [](int count) { omp_set_num_threads(count); },
          "OpenMP threads (default: OMP_NUM_THREADS, else all cores); the results do not depend on it")

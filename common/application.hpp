@@ -9,7 +9,7 @@
 
 namespace tailrun {
 
-// Adds --quiet, --threads and --version, and sets up messages.
+// Adds --quiet, --verbose, --threads and --version, and sets up messages.
 void add_common_options(CLI::App& app);
 bool quiet();
 

@@ -109,7 +109,7 @@ StepResult Newmark::step(State& state, MaterialPoints& points, ElementForces& fo
   const double gamma = options_.gamma, beta = options_.beta, theta = options_.theta, c1 = gamma / (beta * dt);
   StepResult result;
   bool fresh = false;
-  if (matrix_step_ != dt || last_iterations_ > options_.refactor_above) {
+  if (std::abs(matrix_step_ - dt) > 1e-9 * dt || last_iterations_ > options_.refactor_above) {
     factorise(forces, dt);
     fresh = true;
   }

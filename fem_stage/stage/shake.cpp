@@ -59,7 +59,7 @@ class Stepper {
     if (halvings_left == 0)
       return fmt::format("at t = {:.5f} s with a step of {:.2e} s: {}", state_.time, dt, result.reason);
     ++newmark_.counts().halvings;
-    spdlog::debug("t = {:.5f} s: step {:.2e} s cut: {}", state_.time, dt, result.reason);
+    spdlog::debug("t = {:.5f} s: step of {:.2e} s cut: {}", state_.time, dt, result.reason);
     for (int half = 0; half < 2; ++half)
       if (std::string reason = advance(0.5 * dt, halvings_left - 1); !reason.empty()) return reason;
     return {};
