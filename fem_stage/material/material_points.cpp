@@ -155,21 +155,26 @@ UpdateReport MaterialPoints::update(std::span<const double> strain_increment, st
   long substeps = 0;
   int failed = std::numeric_limits<int>::max();
   // Liquefied points cost a hundred times a settled one, so work is handed out in small chunks; every point's result is
-  // its own, so the order does not matter.
+  // its own, so the order does not matter. A handful of points is not worth waking the other threads.
   groups_->for_each_group([&](auto& group, const std::vector<std::size_t>& points) {
     const long count = static_cast<long>(points.size());
-#pragma omp parallel for schedule(dynamic, 8) reduction(+ : substeps) reduction(min : failed) if (count > 32)
-    for (long i = 0; i < count; ++i) {
+    const auto update_point = [&](long i, long& work, int& first_failure) {
       const std::size_t point = points[static_cast<std::size_t>(i)];
       const double* e = strain_increment.data() + 3 * point;
       const long done = group.update(static_cast<std::size_t>(i), {e[0], e[1], e[2]});
       if (done < 0) {
-        failed = std::min(failed, static_cast<int>(point));
+        first_failure = std::min(first_failure, static_cast<int>(point));
       } else {
-        substeps += done;
+        work += done;
       }
       store(group.trial_stress(static_cast<std::size_t>(i)), effective_stress, point);
+    };
+    if (count <= 32) {
+      for (long i = 0; i < count; ++i) update_point(i, substeps, failed);
+      return;
     }
+#pragma omp parallel for schedule(dynamic, 8) reduction(+ : substeps) reduction(min : failed)
+    for (long i = 0; i < count; ++i) update_point(i, substeps, failed);
   });
   UpdateReport report;
   report.substeps = substeps;
