@@ -13,7 +13,9 @@ namespace tailrun::transfer {
 // interpolated by the shape functions; never outside the range of those elements, so nothing overshoots and nothing
 // leaks from one region into another. linear: the element's value plus a gradient fitted by least squares to the
 // neighbours of the same region, scaled down until every point stays inside the neighbours' range (Barth and
-// Jespersen 1989); exact for a linear field inside a region.
+// Jespersen 1989). An element on the edge of its region, a surface or a bed, has neighbours on one side only; there the
+// range is mirrored about the element's own value, so that stress goes on falling towards a free surface. Exact for a
+// linear field.
 enum class Recovery { element, nodal, linear };
 
 struct MapOptions {

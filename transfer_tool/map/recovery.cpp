@@ -30,6 +30,18 @@ std::vector<std::int64_t> neighbours(const Snapshot& snapshot, const std::vector
   return found;
 }
 
+// Elements with a side behind which there is no element of their region.
+std::vector<bool> on_edge_of_region(const Snapshot& snapshot) {
+  std::vector<bool> on_edge(snapshot.elements(), false);
+  for (const auto& side : element_sides(snapshot)) {
+    const auto element = static_cast<std::size_t>(side.element);
+    if (side.neighbour < 0 ||
+        snapshot.region_id[static_cast<std::size_t>(side.neighbour)] != snapshot.region_id[element])
+      on_edge[element] = true;
+  }
+  return on_edge;
+}
+
 std::array<double, 2> centre_of_area(const Corners& corners) {
   const NodeWeights integral = integrated_shape_functions(corners);
   std::array<double, 2> centre{};
@@ -80,6 +92,7 @@ std::vector<double> nodal_recovery(const Snapshot& snapshot, const SamplePoints&
 std::vector<double> linear_recovery(const Snapshot& snapshot, const SamplePoints& points,
                                     const std::vector<double>& field, std::size_t columns) {
   const auto around = elements_of_nodes(snapshot);
+  const auto on_edge = on_edge_of_region(snapshot);
   std::vector<std::array<double, 2>> centres(snapshot.elements());
   for (std::size_t e = 0; e < centres.size(); ++e) centres[e] = centre_of_area(initial_corners(snapshot, e));
 
@@ -107,6 +120,11 @@ std::vector<double> linear_recovery(const Snapshot& snapshot, const SamplePoints
         high = std::max(high, value);
         right += (value - mean) *
                  Eigen::Vector2d(centres[other][0] - centres[element][0], centres[other][1] - centres[element][1]);
+      }
+      if (on_edge[element]) {
+        const double reach = std::max(high - mean, mean - low);
+        low = mean - reach;
+        high = mean + reach;
       }
       const Eigen::Vector2d gradient = inverse * right;
       double limiter = 1.0;
