@@ -37,6 +37,15 @@ void ContactNodes<Dim>::update(const BlockGrid<Dim>& grid) {
   for (std::size_t b = 0; b < grid.occupied(); ++b)
     for (const int a : grid.active_around(b))
       if (block_start_[static_cast<std::size_t>(a)] >= 0) near_[b] = 1;
+
+  around_.resize(grid.active());
+  for (std::size_t a = 0; a < grid.active(); ++a) {
+    if (block_start_[a] < 0) continue;
+    for (int k = 0; k < Block<Dim>::neighbours; ++k) {
+      const int other = grid.active_beside(a, k);
+      around_[a][k] = other >= 0 && block_start_[static_cast<std::size_t>(other)] >= 0 ? other : -1;
+    }
+  }
 }
 
 template class ContactNodes<2>;

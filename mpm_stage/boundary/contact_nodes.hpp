@@ -26,6 +26,8 @@ class ContactNodes {
   // Looks up the active blocks of `grid`; call after each sort.
   void update(const BlockGrid<Dim>& grid);
 
+  // Active blocks with contacts around active block a, which must have contacts itself; -1: none there.
+  const std::array<int, Block<Dim>::neighbours>& contact_around(std::size_t a) const { return around_[a]; }
   bool any() const { return !contacts_.empty(); }
   // Contacts of the nodes of active block a, or null when the ground is too far off for any particle there to touch it.
   const NodeContact* of_block(std::size_t a) const {
@@ -44,6 +46,7 @@ class ContactNodes {
   std::vector<NodeContact> contacts_;
   std::vector<double> distances_;
   std::vector<std::uint8_t> near_;
+  std::vector<std::array<int, Block<Dim>::neighbours>> around_;
 };
 
 }  // namespace tailrun::mpm

@@ -135,7 +135,8 @@ void BlockGrid<Dim>::sort(Particles<Dim>& particles, std::span<const std::uint8_
   first_.push_back(kept);
   first_run_.push_back(runs_.size());
 
-  std::vector<std::uint64_t> active_keys;
+  std::vector<std::uint64_t>& active_keys = active_keys_;
+  active_keys.clear();
   active_keys.reserve(occupied_keys.size() * 2);
   for (const auto& index : occupied_index_)
     for (int k = 0; k < Block<Dim>::neighbours; ++k) active_keys.push_back(block_key<Dim>(neighbour<Dim>(index, k)));
@@ -154,6 +155,11 @@ void BlockGrid<Dim>::sort(Particles<Dim>& particles, std::span<const std::uint8_
   for (std::size_t b = 0; b < occupied_keys.size(); ++b)
     for (int k = 0; k < Block<Dim>::neighbours; ++k)
       active_around_[b][k] = rank_of(active_keys, block_key<Dim>(neighbour<Dim>(occupied_index_[b], k)));
+}
+
+template <int Dim>
+int BlockGrid<Dim>::active_beside(std::size_t a, int k) const {
+  return rank_of(active_keys_, block_key<Dim>(neighbour<Dim>(active_index_[a], k)));
 }
 
 template <int Dim>

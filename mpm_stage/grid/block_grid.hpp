@@ -69,6 +69,8 @@ class BlockGrid {
   // Active blocks around occupied block b, and occupied blocks (-1: none) around active block a.
   const std::array<int, Block<Dim>::neighbours>& active_around(std::size_t b) const { return active_around_[b]; }
   const std::array<int, Block<Dim>::neighbours>& tiles_around(std::size_t a) const { return tiles_around_[a]; }
+  // Active block at neighbour position k of active block a, -1: none. A search; not for inner loops.
+  int active_beside(std::size_t a, int k) const;
   std::size_t bytes() const;
 
  private:
@@ -78,6 +80,7 @@ class BlockGrid {
   std::vector<std::size_t> first_, first_run_;
   std::vector<Run> runs_;
   std::vector<std::array<int, Block<Dim>::neighbours>> active_around_, tiles_around_;
+  std::vector<std::uint64_t> active_keys_;
   std::vector<std::uint32_t> order_, rank_;
   AlignedVector<double> spare_;
   AlignedVector<std::int32_t> spare_integers_;

@@ -41,8 +41,10 @@ struct Filling {
   std::array<double, 3> centre{};
   std::vector<double> wave;  // amplitude (m/s), wave number (1/m), axis of motion, axis of variation
   bool geostatic = false;
-  double surface = 0.0, k0 = 1.0;
-  double rotation = 0.0;  // radians, of a box about its low corner
+  std::array<double, 2> surface{};     // m, a point of the free surface
+  double slope = 0.0;                  // radians, of the surface, positive where it falls with x
+  double shear_ratio = 0.0, k0 = 1.0;  // shear over normal stress on planes parallel to the surface
+  double rotation = 0.0;               // radians, of a box about its low corner
 };
 
 Filling read_filling(const CaseNode& node, int dimension, double h, const std::array<double, 3>& origin) {
@@ -92,9 +94,15 @@ Filling read_filling(const CaseNode& node, int dimension, double h, const std::a
               static_cast<double>(wave->integer_or("variation_axis", 0, dimension - 1, 0))};
   }
   if (const auto stress = node.object_if("stress")) {
-    stress->choice("kind", {"geostatic"});
     f.geostatic = true;
-    f.surface = stress->number("surface", "m", Range::any());
+    if (stress->choice("kind", {"geostatic", "slope"}) == "geostatic") {
+      f.surface = {0.0, stress->number("surface", "m", Range::any())};
+    } else {
+      const auto point = stress->numbers("surface_point", "m", Range::any(), 2);
+      f.surface = {point[0], point[1]};
+      f.slope = stress->number("angle", "deg", Range::between(-89.0, 89.0)) * M_PI / 180.0;
+      f.shear_ratio = stress->number_or("shear_ratio", "1", Range::any(), std::tan(f.slope));
+    }
     f.k0 = stress->number_or("k0", "1", Range::between(0.0, 5.0), 1.0);
   }
   return f;
@@ -134,8 +142,18 @@ void fill(const Filling& f, int dimension, int material, double density, const s
         set.mass.push_back(density * volume);
         set.volume.push_back(volume);
         set.material_id.push_back(material);
-        const double vertical = f.geostatic ? std::min(0.0, density * gravity[1] * (f.surface - x[1])) : 0.0;
-        std::vector<double> stress = {f.k0 * vertical, vertical, f.k0 * vertical};
+        std::vector<double> stress = {0.0, 0.0, 0.0};
+        if (f.geostatic) {
+          // Infinite slope: stresses grow with the distance to the surface; turned into the axes.
+          const double c = std::cos(f.slope), sn = std::sin(f.slope);
+          const double depth = std::max(0.0, (f.surface[0] - x[0]) * sn + (f.surface[1] - x[1]) * c);
+          const double normal = density * gravity[1] * c * depth, along = f.k0 * normal,
+                       shear = -f.shear_ratio * normal;
+          const double xx = along * c * c + normal * sn * sn + 2.0 * shear * c * sn;
+          const double yy = along * sn * sn + normal * c * c - 2.0 * shear * c * sn;
+          const double xy = (normal - along) * c * sn + shear * (c * c - sn * sn);
+          stress = {xx, yy, f.k0 * normal, xy};
+        }
         stress.resize(static_cast<std::size_t>(set.components()), 0.0);
         set.effective_stress.insert(set.effective_stress.end(), stress.begin(), stress.end());
       }

@@ -17,6 +17,7 @@
 
 #include "common/error.hpp"
 #include "mpm_stage/boundary/contact_gap.hpp"
+#include "mpm_stage/boundary/ground_friction.hpp"
 #include "mpm_stage/grid/tiles.hpp"
 #include "mpm_stage/material/stress_update.hpp"
 #include "mpm_stage/step/grid_update.hpp"
@@ -144,6 +145,7 @@ class ExplicitSolver final : public Solver<Dim> {
   void update_stresses(double dt);
   void particles_to_grid();
   void scatter_ground_gaps(std::size_t b);
+  void rub_ground();
   [[noreturn]] void fail(std::size_t begin, std::size_t end, const std::string& what) const;
 
   SolverOptions options_;
@@ -164,6 +166,8 @@ class ExplicitSolver final : public Solver<Dim> {
   AlignedVector<AveragedNode> averaged_tiles_;
   std::vector<double> averaged_;
   std::vector<Gap> gap_tiles_;
+  std::vector<NodeGrip> grip_;  // per active block
+  std::vector<double> spread_;
   std::vector<GridSums<Dim>> grid_sums_;
   struct BlockMotion {
     double far = 0.0, wave = 0.0, fast = 0.0, kinetic = 0.0;
@@ -209,7 +213,11 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::sort() {
     averaged_tiles_.resize(tiles_.size());
     averaged_.resize(velocity_.size());
   }
-  if (ground_.any()) gap_tiles_.resize(tiles_.size());
+  if (ground_.any()) {
+    gap_tiles_.resize(tiles_.size());
+    grip_.resize(velocity_.size());
+    spread_.resize(velocity_.size());
+  }
   grid_sums_.resize(grid_.active());
   motion_.resize(grid_.occupied());
   dissipated_.resize(grid_.occupied());
@@ -245,7 +253,10 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::update_grid(double dt, const std::
     GridSums<Dim> sums;
     const NodeContact* contact = ground_.of_block(a);
     Gap gap[block_nodes];
-    if (contact) gather_tiles<Dim, Shape>(grid_, a, gap_tiles_.data(), gap);
+    if (contact) {
+      gather_tiles<Dim, Shape>(grid_, a, gap_tiles_.data(), gap);
+      std::fill_n(grip_.data() + a * block_nodes, block_nodes, NodeGrip{});
+    }
     for (int n = 0; n < block_nodes; ++n) {
       const double m = sum[n][0];
       Vec4& out = velocity_[a * block_nodes + n];
@@ -267,7 +278,8 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::update_grid(double dt, const std::
         if (options_.local_damping > 0.0)
           sums.damping += m * apply_local_damping<Dim>(options_.local_damping, dt, before, v);
       const std::array<double, Dim> pushed = v;
-      if (contact && contact[n].count > 0) apply_ground<Dim>(contact[n], m, std::max(0.0, gap[n].value) / dt, v, sums);
+      if (contact && contact[n].count > 0)
+        grip_[a * block_nodes + n] = stop_approach<Dim>(contact[n], m, std::max(0.0, gap[n].value) / dt, v);
       if (wall_nodes_.any) {
         std::array<int, Dim> node;
         for (int d = 0, k = n; d < Dim; ++d, k /= B) node[d] = grid_.active_index(a)[d] * B + k % B;
@@ -284,6 +296,7 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::update_grid(double dt, const std::
     }
     grid_sums_[a] = sums;
   }
+  if (ground_.any()) rub_ground();
   for (const auto& s : grid_sums_) {
     work_.friction += s.friction;
     work_.damping += s.damping;
@@ -291,6 +304,32 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::update_grid(double dt, const std::
     for (int d = 0; d < Dim; ++d) impulse_[d] += s.impulse[d];
   }
   add_time(seconds_.grid, since);
+}
+
+// The ground's friction on the nodes' velocities.
+template <int Dim, class Shape, bool Split, bool Flip>
+void ExplicitSolver<Dim, Shape, Split, Flip>::rub_ground() {
+#pragma omp parallel for schedule(static)
+  for (std::size_t a = 0; a < grid_.active(); ++a)
+    if (ground_.of_block(a))
+      for (int n = 0; n < block_nodes; ++n) spread_[a * block_nodes + n] = spread_of(ground_, grip_, a, n);
+#pragma omp parallel for schedule(static)
+  for (std::size_t a = 0; a < grid_.active(); ++a) {
+    if (!ground_.of_block(a)) continue;
+    for (int n = 0; n < block_nodes; ++n) {
+      const std::size_t k = a * block_nodes + n;
+      if (grip_[k].mass <= 0.0) continue;
+      std::array<double, Dim> v, lost{};
+      for (int d = 0; d < Dim; ++d) v[d] = lost[d] = velocity_[k][d];
+      grid_sums_[a].friction += apply_friction<Dim>(grip_[k], pooled_impulse(ground_, grip_, spread_, a, n), v);
+      for (int d = 0; d < Dim; ++d) {
+        lost[d] = v[d] - lost[d];
+        grid_sums_[a].impulse[d] += grip_[k].mass * lost[d];
+      }
+      velocity_[k] = node_velocity<Dim>(v.data());
+      if constexpr (Split) change_[k] += node_velocity<Dim>(lost.data());
+    }
+  }
 }
 
 template <int Dim, class Shape, bool Split, bool Flip>

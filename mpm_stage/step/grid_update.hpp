@@ -1,11 +1,10 @@
-// The grid step of one node: forces and body acceleration, damping, walls and ground.
+// The grid step of one node: forces and body acceleration, damping and walls.
 #pragma once
 
 #include <array>
 #include <cmath>
 
-#include "mpm_stage/boundary/contact.hpp"
-#include "mpm_stage/boundary/contact_nodes.hpp"
+#include "mpm_stage/boundary/wall_contact.hpp"
 #include "mpm_stage/boundary/walls.hpp"
 
 namespace tailrun::mpm {
@@ -60,23 +59,8 @@ inline void apply_walls(const WallNodes<Dim>& walls, const std::array<int, Dim>&
       } else {
         std::array<double, Dim> n{};
         n[d] = s == 0 ? 1.0 : -1.0;
-        sums.friction += mass * apply_contact<Dim>(v, n, side.friction, false, 0.0);
+        sums.friction += mass * apply_wall_contact<Dim>(v, n, side.friction);
       }
-    }
-}
-
-// `allowed` m/s: contact_gap.hpp's gap over the time step.
-template <int Dim>
-inline void apply_ground(const NodeContact& contact, double mass, double allowed, std::array<double, Dim>& v,
-                         GridSums<Dim>& sums) {
-  // Two surfaces of a corner are taken in turn, twice, so that neither is left pushed through.
-  const int rounds = contact.count > 1 ? 2 : 1;
-  for (int r = 0; r < rounds; ++r)
-    for (int k = 0; k < contact.count; ++k) {
-      std::array<double, Dim> n{};
-      n[0] = contact.point[k].normal[0];
-      n[1] = contact.point[k].normal[1];
-      sums.friction += mass * apply_contact<Dim>(v, n, contact.point[k].friction, contact.adhere, allowed);
     }
 }
 

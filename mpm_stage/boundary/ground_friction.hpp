@@ -1,0 +1,116 @@
+// Coulomb friction of the ground, as an impulse in momentum, after the approach of every node has been stopped.
+//
+// What a node may lose along the ground is friction times its normal impulse. Nodes just under the ground have little
+// mass but gradients as large as any, so their share of the normal impulses exceeds their share of the momentum: taken
+// node by node, slow sliding would stop them altogether and waste the rest of their friction, and a block would creep
+// down a slope that should hold it. So the capacity that nodes have is pooled: each node's friction impulse is spread
+// over the nodes in contact around it (a cell in every direction) in proportion to their masses. The sum is untouched.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mpm_stage/boundary/contact_nodes.hpp"
+
+namespace tailrun::mpm {
+
+// State of a node after the normal part of contact. mass 0: not in contact.
+struct NodeGrip {
+  double mass = 0.0;      // kg
+  double capacity = 0.0;  // N s, friction coefficient times normal impulse
+  std::array<double, 2> normal{};
+};
+
+// Stops the approach of a node. The approach is free up to `allowed` (m/s), at which the gap between material and
+// ground closes in this step (contact_gap.hpp): a node's shape function reaches over a gap, and without this material
+// would come to rest in the air and climb a little with each bounce.
+template <int Dim>
+inline NodeGrip stop_approach(const NodeContact& contact, double mass, double allowed, std::array<double, Dim>& v) {
+  NodeGrip grip;
+  if (contact.adhere && allowed == 0.0) {
+    v.fill(0.0);
+    return grip;
+  }
+  // Two surfaces of a corner are taken in turn, twice, so that neither is left pushed through.
+  const int rounds = contact.count > 1 ? 2 : 1;
+  for (int r = 0; r < rounds; ++r)
+    for (int k = 0; k < contact.count; ++k) {
+      const auto& n = contact.point[k].normal;
+      const double approach = -(v[0] * n[0] + v[1] * n[1]) - allowed;
+      if (approach <= 0.0) continue;
+      v[0] += approach * n[0];
+      v[1] += approach * n[1];
+      grip.mass = mass;
+      grip.capacity += contact.point[k].friction * mass * approach;
+      grip.normal = n;
+    }
+  return grip;
+}
+
+// Takes at most `impulse` (N s) off the tangential momentum. Returns the energy lost to sliding, J: the impulse times
+// the velocity that the node keeps, for it is that velocity which displaces it.
+template <int Dim>
+inline double apply_friction(const NodeGrip& grip, double impulse, std::array<double, Dim>& v) {
+  const double vn = v[0] * grip.normal[0] + v[1] * grip.normal[1];
+  std::array<double, Dim> t = v;
+  t[0] -= vn * grip.normal[0];
+  t[1] -= vn * grip.normal[1];
+  double sliding = 0.0;
+  for (int d = 0; d < Dim; ++d) sliding += t[d] * t[d];
+  sliding = std::sqrt(sliding);
+  const double left = std::max(0.0, sliding - impulse / grip.mass);
+  const double taken = sliding > 0.0 ? 1.0 - left / sliding : 0.0;
+  for (int d = 0; d < Dim; ++d) v[d] -= taken * t[d];
+  return grip.mass * (sliding - left) * left;
+}
+
+// Index of the node `step` (-1, 0, 1 in each direction) away from node n of active block a, in arrays of Block::nodes
+// values per active block; -1 where no contact block lies.
+template <int Dim>
+inline std::ptrdiff_t neighbour_node(const ContactNodes<Dim>& ground, std::size_t a, int n, int step) {
+  constexpr int B = Block<Dim>::cells;
+  int at = 0, block = 0;
+  for (int d = 0, stride = 1, three = 1; d < Dim; ++d, stride *= B, three *= 3, n /= B, step /= 3) {
+    int i = n % B + step % 3 - 1;
+    int side = 1;
+    if (i < 0) {
+      i += B;
+      side = 0;
+    } else if (i >= B) {
+      i -= B;
+      side = 2;
+    }
+    at += i * stride;
+    block += side * three;
+  }
+  const int other = ground.contact_around(a)[block];
+  return other < 0 ? -1 : static_cast<std::ptrdiff_t>(other) * Block<Dim>::nodes + at;
+}
+
+// Friction impulse per unit mass that node n spreads: its capacity over the masses in contact around it.
+template <int Dim>
+inline double spread_of(const ContactNodes<Dim>& ground, const std::vector<NodeGrip>& grip, std::size_t a, int n) {
+  const double capacity = grip[a * Block<Dim>::nodes + n].capacity;
+  if (capacity <= 0.0) return 0.0;
+  double mass = 0.0;
+  for (int s = 0; s < Block<Dim>::neighbours; ++s) {
+    const auto k = neighbour_node(ground, a, n, s);
+    if (k >= 0) mass += grip[static_cast<std::size_t>(k)].mass;
+  }
+  return capacity / mass;
+}
+
+// Friction impulse (N s) of node n from the spreads around it.
+template <int Dim>
+inline double pooled_impulse(const ContactNodes<Dim>& ground, const std::vector<NodeGrip>& grip,
+                             const std::vector<double>& spread, std::size_t a, int n) {
+  double sum = 0.0;
+  for (int s = 0; s < Block<Dim>::neighbours; ++s) {
+    const auto k = neighbour_node(ground, a, n, s);
+    if (k >= 0) sum += spread[static_cast<std::size_t>(k)];
+  }
+  return sum * grip[a * Block<Dim>::nodes + n].mass;
+}
+
+}  // namespace tailrun::mpm
