@@ -102,6 +102,29 @@ void read_provenance(const Hdf5Reader& file, FileReport& report) {
   for (std::size_t i = 0; i < std::min(names.size(), sums.size()); ++i) report.inputs.emplace_back(names[i], sums[i]);
 }
 
+bool is_group(const Hdf5Reader& file, const std::string& name) {
+  try {
+    file.members(name);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+// Datasets that no part of the format describes, such as the restart state that a program keeps in its own group.
+void read_other(const Hdf5Reader& file, const std::string& group, FileReport& report) {
+  for (const auto& name : file.members(group)) {
+    const std::string place = group + "/" + name;
+    if (place == "/tailrun/provenance" || place == "/tailrun/notes" || place == "/tailrun/terrain" ||
+        place == "/tailrun/lines" || place.ends_with("_names"))
+      continue;
+    if (is_group(file, place))
+      read_other(file, place, report);
+    else
+      report.other.emplace_back(place, file.shape(place));
+  }
+}
+
 std::string columns_of(const std::vector<double>& values) {
   std::string text;
   for (const double value : values) text += fmt::format("{}{:.5g}", text.empty() ? "" : ", ", value);
@@ -138,7 +161,10 @@ FileReport read_file_report(const std::filesystem::path& path) {
     if (file.has(group))
       for (const auto& name : file.members(group))
         report.polylines.emplace_back(name, file.shape(std::string(group) + "/" + name)[0]);
-  if (file.has("/tailrun/notes")) report.notes = file.members("/tailrun/notes");
+  if (file.has("/tailrun/notes"))
+    for (const auto& name : file.members("/tailrun/notes"))
+      for (const auto& text : file.texts("/tailrun/notes/" + name)) report.notes.emplace_back(name, text);
+  read_other(file, "/tailrun", report);
   read_fields(file, points_of, report.fields);
   read_fields(file, cells_of, report.fields);
   return report;
@@ -158,7 +184,10 @@ std::string report_text(const FileReport& report) {
   for (const auto& group : report.groups)
     text += fmt::format("  {:<9} {:<24} {:>9} {:>14.6g}\n", group.what, group.name, group.count, group.mass);
   for (const auto& [name, rows] : report.polylines) text += fmt::format("  line {:<29} {:>9} rows\n", name, rows);
-  for (const auto& note : report.notes) text += fmt::format("  note {}\n", note);
+  for (const auto& [name, note] : report.notes)
+    text += fmt::format("  note {:<29} {:>9} characters\n", name, note.size());
+  for (const auto& [name, shape] : report.other)
+    text += fmt::format("  data {:<29} {:>9}\n", name, fmt::format("{}", fmt::join(shape, " x ")));
   text += fmt::format("\n  {:<38} {:>6} {:>13} {:>13} {:>13}\n", "field", "unit", "min", "mean", "max");
   for (const auto& field : report.fields) {
     const std::string name = field.name.substr(field.name.rfind('/') + 1);
@@ -186,7 +215,11 @@ nlohmann::ordered_json report_json(const FileReport& report) {
     json[group.what == "region" ? "regions" : "materials"].push_back(
         {{"name", group.name}, {"count", group.count}, {"mass_kg", group.mass}});
   for (const auto& [name, rows] : report.polylines) json["lines"].push_back({{"name", name}, {"rows", rows}});
-  json["notes"] = report.notes;
+  for (const auto& [name, note] : report.notes) {
+    const auto parsed = nlohmann::ordered_json::parse(note, nullptr, false);
+    json["notes"][name] = parsed.is_discarded() ? nlohmann::ordered_json(note) : parsed;
+  }
+  for (const auto& [name, shape] : report.other) json["other"].push_back({{"name", name}, {"shape", shape}});
   for (const auto& field : report.fields)
     json["fields"].push_back({{"name", field.name},
                               {"unit", field.unit},

@@ -34,7 +34,8 @@ struct FileReport {
   };
   std::vector<Group> groups;
   std::vector<std::pair<std::string, std::size_t>> polylines;  // terrain and named lines, with their number of rows
-  std::vector<std::string> notes;
+  std::vector<std::pair<std::string, std::string>> notes;      // name, text
+  std::vector<std::pair<std::string, std::vector<std::size_t>>> other;  // further datasets of /tailrun: restart states
   std::vector<FieldReport> fields;
 };
 

@@ -58,13 +58,15 @@ void read_regions(const CaseNode& root, const std::vector<std::string>& region_n
     result.terrain.region[region] = true;
     kept[region] = false;
   }
-  if (!result.terrain.any()) node->fail("regions", "name at least one region that is to be the bed");
   result.terrain.name = node->text_or("name", "bed");
   if (const auto to = node->number_if("downstream_to", "m", Range::any())) {
+    if (!result.terrain.any()) node->fail("downstream_to", "there is no bed to extend: 'regions' names none");
     result.terrain.extend = true;
     result.terrain.downstream_to = *to;
   }
   result.terrain.walls = node->boolean_or("walls", false);
+  if (!result.terrain.any() && !result.terrain.walls)
+    node->fail("regions", "name at least one region that is to be the bed, or set 'walls' to true");
   result.terrain.wall_height = node->number_or("wall_height", "m", Range::non_negative(), 10.0);
   result.terrain.downstream_slope = node->number_or("downstream_slope", "deg", Range::open(-80.0, 80.0), 0.0);
 }

@@ -57,7 +57,7 @@ TEST_CASE("a particles file's report, as text and as JSON") {
   const auto state = map_state(snapshot, points, {});
   auto particles = particle_set(snapshot, points, state, assign(snapshot, points, state, {Rule{"soil", {}, {}}}));
   particles.terrain.push_back({"bed", {0, 0, 3, 0}});
-  particles.notes["audit"] = "{}";
+  particles.notes["audit"] = R"({"integrals": 12})";
   tailrun::write_particles(folder / "p.h5", particles, {"transfer_tool", {}, {}});
   const FileReport report = read_file_report(folder / "p.h5");
   CHECK(report.kind == "tailrun-particles");
@@ -66,10 +66,40 @@ TEST_CASE("a particles file's report, as text and as JSON") {
   CHECK(json["time_s"] == 16.0);
   CHECK(json["materials"][0]["count"] == 24);
   CHECK(json["lines"][0]["name"] == "bed");
-  CHECK(json["notes"][0] == "audit");
+  CHECK(json["notes"]["audit"]["integrals"] == 12);
   const std::string text = report_text(report);
   for (const char* expected : {"made by transfer_tool", "24 points", "soil", "line bed", "pore_pressure"})
     CHECK_MESSAGE(text.find(expected) != std::string::npos, expected);
+}
+
+TEST_CASE("docs/formats.md describes every field of both formats") {
+  const example::TemporaryFolder folder;
+  const auto snapshot = mesh();
+  const auto points = example::sample_all(snapshot, Layout::gauss, 1);
+  const auto state = map_state(snapshot, points, {});
+  tailrun::write_snapshot(folder / "s.h5", snapshot, {});
+  tailrun::write_particles(
+      folder / "p.h5", particle_set(snapshot, points, state, assign(snapshot, points, state, {Rule{"soil", {}, {}}})),
+      {});
+  std::ifstream stream(std::string(TAILRUN_SOURCE_DIR) + "/docs/formats.md");
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  for (const char* name : {"s.h5", "p.h5"})
+    for (const auto& described : read_file_report(folder / name).fields)
+      CHECK_MESSAGE(text.find("| `" + described.name + "`") != std::string::npos, described.name);
+}
+
+TEST_CASE("a program's own restart state beside a snapshot is listed") {
+  const example::TemporaryFolder folder;
+  tailrun::write_snapshot(folder / "geostatic.h5", mesh(), {}, [](tailrun::Hdf5Writer& file) {
+    file.write("/tailrun/fem_restart/material_state", std::vector<double>{1, 2, 3, 4, 5, 6}, 2, "1", "state");
+  });
+  const FileReport report = read_file_report(folder / "geostatic.h5");
+  const auto place = std::find_if(report.other.begin(), report.other.end(), [](const auto& entry) {
+    return entry.first == "/tailrun/fem_restart/material_state";
+  });
+  REQUIRE(place != report.other.end());
+  CHECK(place->second == std::vector<std::size_t>{3, 2});
+  CHECK(report_text(report).find("3 x 2") != std::string::npos);
 }
 
 TEST_CASE("missing, foreign and truncated files are refused with a clear message") {
