@@ -19,6 +19,8 @@
 
 #include "common/application.hpp"
 #include "common/error.hpp"
+#include "fem_stage/element_test/calibration.hpp"
+#include "fem_stage/element_test/element_test.hpp"
 #include "fem_stage/mesh/gmsh_mesh.hpp"
 #include "fem_stage/output/state_file.hpp"
 #include "fem_stage/output/summary.hpp"
@@ -137,5 +139,20 @@ int main(int argc, char** argv) {
     make_geostatic(arguments);
     make_shake(arguments, false);
   });
+
+  ElementTestOptions element_test;
+  CLI::App* element = app.add_subcommand("element", "One material point under a laboratory test's loading");
+  element->add_option("case", element_test.case_file, "test.json")->required();
+  element->add_option("-o,--output", element_test.output,
+                      "CSV of the response (SI; stresses and volumetric strain compression positive)");
+  element->add_option("--summary", element_test.summary, "JSON summary (also printed)");
+  element->callback([&] { run_element_test(element_test); });
+
+  CalibrationOptions calibration;
+  CLI::App* calibrate = app.add_subcommand("calibrate", "PM4Sand parameters from target strengths");
+  calibrate->add_option("case", calibration.case_file, "target.json")->required();
+  calibrate->add_option("-o,--output", calibration.output_folder, "Folder of curves, picture and parameters")
+      ->default_val("calibration");
+  calibrate->callback([&] { run_calibration(calibration); });
   return run_application(app, argc, argv);
 }
