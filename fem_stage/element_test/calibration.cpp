@@ -177,9 +177,10 @@ int run_calibration(const CalibrationOptions& options) {
   file.finish();
 
   Pm4SandParameters sand = *given;
-  // h_po hardly moves the strength at large strain, Q moves the cyclic strength: two rounds settle both.
-  const int rounds = targets.cyclic && !targets.residual.empty() ? 2 : 1;
-  for (int round = 0; round < rounds; ++round) {
+  // Each of the two moves the other's target somewhat: one after the other until neither changes.
+  const bool both = targets.cyclic && !targets.residual.empty();
+  for (int round = 0; round < (both ? 20 : 1); ++round) {
+    const Pm4SandParameters before = sand;
     if (!targets.residual.empty()) {
       sand.Q = growing_root(
           [&](double Q) {
@@ -200,6 +201,10 @@ int run_calibration(const CalibrationOptions& options) {
           },
           std::log(sand.contraction_rate), 0.5, std::log(1e-3), std::log(1e3), 2e-3, "h_po between 0.001 and 1000");
       sand.contraction_rate = std::exp(log_h);
+    }
+    if (std::fabs(sand.Q - before.Q) < 2e-3 &&
+        std::fabs(std::log(sand.contraction_rate / before.contraction_rate)) < 5e-3) {
+      break;
     }
   }
 

@@ -137,9 +137,23 @@ ImplicitStep implicit_euler(const Law& law, const Pm4PointConstants& point, cons
     x = std::clamp(x - F * x / std::min(x_slope, -0.2 * G * x), 1e-3 * x, x_most);
   }
   out.plastic = true;
+  out.v.p = std::max(p + (p_elastic - p_trial), floor);
+  if (left_to_alpha > 0.0) {
+    // With x known, alpha moves on along b until f = 0 at the true p: |s_trial - y p alpha| = 2 G x + p ((1 - y) beta +
+    // sqrt(1/2) m), whose slope in y = 1/(1 + w) is p B.
+    double y = 1.0 / (1.0 + w);
+    for (int iteration = 0; iteration < 4; ++iteration) {
+      const Deviator eta = s_trial - (y * out.v.p) * v.alpha;
+      const double eta_length = norm(eta);
+      n = (1.0 / std::max(eta_length, 1e-300)) * eta;
+      const double residual = eta_length - 2.0 * G * x - out.v.p * ((1.0 - y) * beta + cone);
+      if (std::fabs(residual) <= 1e-9 * out.v.p) break;
+      const double slope = out.v.p * std::max(beta - contract(v.alpha, n), 1e-3);
+      y = std::clamp(y - residual / slope, 0.0, 1.0);
+    }
+  }
   out.n = n;
   out.v.s = s_trial - (2.0 * G * x) * n;
-  out.v.p = std::max(p + (p_elastic - p_trial), floor);
   out.v.alpha = (1.0 / out.v.p) * out.v.s - cone * n;
   if (c.fabric_rate > 0.0 && c.dilatancy.at(start.p_star) < 0.0) {
     const double wz = c.fabric_rate * x;
