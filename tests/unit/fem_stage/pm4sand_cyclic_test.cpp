@@ -121,8 +121,8 @@ HistoryError history_error(const Pm4SandParameters& parameters, double csr, cons
   const std::vector<double> tau = column(result, &ElementTestRow::shear_stress);
   HistoryError error;
   int count = 0;
-  for (std::size_t i = 0; i < table.rows && table["ru"][i] < 0.95 && std::fabs(table["gamma"][i]) < 0.01;
-       ++i, ++count) {
+  const double last = table["N_cycles"].back();
+  for (std::size_t i = 0; i < table.rows && table["ru"][i] < 0.95 && table["N_cycles"][i] < last; ++i, ++count) {
     error.ru += square(interpolate(cycle, ru, table["N_cycles"][i]) - table["ru"][i]);
     error.tau += square((interpolate(cycle, tau, table["N_cycles"][i]) / 1e3 - table["tau_kPa"][i]) / (100.0 * csr));
   }
