@@ -16,9 +16,9 @@ struct Columns {
   double* __restrict gxx, * __restrict gxy, * __restrict gyx, * __restrict gyy;
   double* __restrict sxx, * __restrict syy, * __restrict szz, * __restrict sxy;
   double* __restrict volume, * __restrict strain, * __restrict strength, * __restrict mass;
-  const double* __restrict trace;
+  const double* __restrict trace, * __restrict shift;
 
-  Columns(Particles<2>& P, const double* trace_of_run, std::size_t begin)
+  Columns(Particles<2>& P, const double* trace_of_run, const double* shift_of_run, std::size_t begin)
       : gxx(P.gradient[0].data() + begin),
         gxy(P.gradient[1].data() + begin),
         gyx(P.gradient[2].data() + begin),
@@ -31,7 +31,8 @@ struct Columns {
         strain(P.plastic_strain.data() + begin),
         strength(P.strength.data() + begin),
         mass(P.mass.data() + begin),
-        trace(trace_of_run) {}
+        trace(trace_of_run),
+        shift(shift_of_run) {}
 };
 
 // Mean and deviator of the in-plane trial stress: sxx = p + q, syy = p - q, sxy = r.
@@ -40,8 +41,8 @@ struct PlaneTrial {
 };
 
 [[gnu::always_inline]] inline PlaneTrial elastic_trial(const MaterialConstants& k, double gxx, double gxy, double gyx,
-                                                       double gyy, double trace, double sxx, double syy, double szz,
-                                                       double sxy) {
+                                                       double gyy, double trace, double shift, double sxx, double syy,
+                                                       double szz, double sxy) {
   // Hughes & Winget: Q = (I - W/2)^-1 (I + W/2) turns by theta with tan(theta / 2) = w / 2; the deviator turns by 2
   // theta.
   const double t = 0.25 * (gyx - gxy), tt = t * t, r1 = 1.0 / (1.0 + tt);
@@ -50,10 +51,10 @@ struct PlaneTrial {
   const double q0 = 0.5 * (sxx - syy), p0 = 0.5 * (sxx + syy);
   const double de = 0.5 * (gxx - gyy), dg = 0.5 * (gxy + gyx);
   PlaneTrial o;
-  o.p = p0 + (k.lambda + k.mu) * trace;
+  o.p = p0 + (k.lambda + k.mu) * trace + shift;
   o.q = q0 * c2 - sxy * s2 + 2.0 * k.mu * de;
   o.r = q0 * s2 + sxy * c2 + 2.0 * k.mu * dg;
-  o.zz = szz + k.lambda * trace;
+  o.zz = szz + k.lambda * trace + shift;
   o.shear_rate_squared = 4.0 * (de * de + dg * dg);
   return o;
 }
@@ -67,8 +68,8 @@ inline double volume_ratio(double trace) {
 void linear_elastic(const MaterialConstants& k, const Columns& c, std::size_t n) {
 #pragma omp simd
   for (std::size_t i = 0; i < n; ++i) {
-    const PlaneTrial t =
-        elastic_trial(k, c.gxx[i], c.gxy[i], c.gyx[i], c.gyy[i], c.trace[i], c.sxx[i], c.syy[i], c.szz[i], c.sxy[i]);
+    const PlaneTrial t = elastic_trial(k, c.gxx[i], c.gxy[i], c.gyx[i], c.gyy[i], c.trace[i], c.shift[i], c.sxx[i],
+                                       c.syy[i], c.szz[i], c.sxy[i]);
     c.sxx[i] = t.p + t.q;
     c.syy[i] = t.p - t.q;
     c.szz[i] = t.zz;
@@ -101,8 +102,8 @@ double elasto_plastic(const MaterialConstants& k, const Columns& c, std::size_t 
   const MohrCoulombSurface surface = Frictional ? mohr_coulomb_surface(k, k.sin_phi) : MohrCoulombSurface{};
   const double shear_flexibility = 0.5 / k.mu, volume_flexibility = 1.0 / (3.0 * k.bulk);
   const auto body = [&](std::size_t i) {
-    const PlaneTrial t =
-        elastic_trial(k, c.gxx[i], c.gxy[i], c.gyx[i], c.gyy[i], c.trace[i], c.sxx[i], c.syy[i], c.szz[i], c.sxy[i]);
+    const PlaneTrial t = elastic_trial(k, c.gxx[i], c.gxy[i], c.gyx[i], c.gyy[i], c.trace[i], c.shift[i], c.sxx[i],
+                                       c.syy[i], c.szz[i], c.sxy[i]);
     const double R = std::sqrt(t.q * t.q + t.r * t.r);
     const double a = t.p + R, b = t.p - R, z = t.zz;
     const Principal trial = {std::max(a, z), std::max(b, std::min(a, z)), std::min(b, z)};
@@ -160,7 +161,7 @@ double newtonian_fluid(const MaterialConstants& k, const Columns& c, std::size_t
   const double viscous = dt > 0.0 ? 2.0 * k.consistency / dt : 0.0, low = k.allow_tension ? -k.bulk : 0.0;
 #pragma omp simd reduction(+ : dissipated)
   for (std::size_t i = 0; i < n; ++i) {
-    c.volume[i] *= volume_ratio(c.trace[i]);
+    c.volume[i] *= volume_ratio(c.trace[i] + c.shift[i] / k.bulk);
     const double pressure = std::max(low, k.bulk * (c.mass[i] / (c.volume[i] * k.reference_density) - 1.0));
     const double own = c.gxx[i] + c.gyy[i], exx = c.gxx[i] - own / 3.0, eyy = c.gyy[i] - own / 3.0, ezz = -own / 3.0;
     const double exy = 0.5 * (c.gxy[i] + c.gyx[i]);
@@ -176,9 +177,9 @@ double newtonian_fluid(const MaterialConstants& k, const Columns& c, std::size_t
 }  // namespace
 
 double update_stress(const MaterialConstants& k, Particles<2>& P, std::size_t begin, std::size_t end,
-                     const double* trace, double dt) {
+                     const double* trace, const double* shift, double dt) {
   const std::size_t n = end - begin;
-  const Columns c(P, trace, begin);
+  const Columns c(P, trace, shift, begin);
   if (k.pore_pressure == PorePressure::undrained)
     for (std::size_t i = 0; i < n; ++i) P.pore_pressure[begin + i] -= k.pore_stiffness * trace[i];
   const bool cutoff = k.tension >= 0.0;

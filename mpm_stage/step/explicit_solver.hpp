@@ -77,6 +77,7 @@ class ExplicitSolver final : public Solver<Dim> {
     StepReport report;
     const double dt = next_dt_;
     report.dt = dt;
+    for (int d = 0; d < Dim; ++d) body_[d] = body[d] + inertial[d];
     update_grid(dt, body, inertial);
     gather(dt, report);
     if (drift_ > 0.99 || leaving_) {
@@ -113,7 +114,7 @@ class ExplicitSolver final : public Solver<Dim> {
   std::size_t grid_bytes() const override {
     return grid_.bytes() +
            (tiles_.capacity() + forces_.capacity() + velocity_.capacity() + change_.capacity()) * sizeof(Vec4) +
-           averaged_tiles_.capacity() * sizeof(AveragedNode) + averaged_.capacity() * sizeof(double);
+           averaged_tiles_.capacity() * sizeof(AveragedNode) + averaged_.capacity() * sizeof(NodeMean);
   }
 
  private:
@@ -157,6 +158,7 @@ class ExplicitSolver final : public Solver<Dim> {
   Walls<Dim> walls_;
   WallNodes<Dim> wall_nodes_;
   ContactNodes<Dim> ground_;
+  std::array<double, Dim> body_{};
   bool averaging_ = false, leaving_ = false;
   double mass_cutoff_ = 0.0, next_dt_ = 0.0, drift_ = 0.0, fastest_wave_ = 0.0, viscous_limit_ = 1e30;
   std::vector<double> wave_speed_;  // m/s, by material
@@ -164,7 +166,7 @@ class ExplicitSolver final : public Solver<Dim> {
   AlignedVector<Vec4> tiles_, forces_;     // per occupied block
   AlignedVector<Vec4> velocity_, change_;  // per active block
   AlignedVector<AveragedNode> averaged_tiles_;
-  std::vector<double> averaged_;
+  AlignedVector<NodeMean> averaged_;
   std::vector<Gap> gap_tiles_;
   std::vector<NodeGrip> grip_;  // per active block
   std::vector<double> spread_;
@@ -393,14 +395,13 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::average() {
     std::fill(tile, tile + tile_nodes, AveragedNode{});
     for (const Run& run : grid_.runs(b))
       if (constants_[run.material].averaged)
-        scatter_volumetric<Dim, Shape>(P_, run.begin, run.end, corner(b), h1_, tile);
+        scatter_volumetric<Dim, Shape>(P_, run.begin, run.end, corner(b), h1_, body_, tile);
   }
 #pragma omp parallel for schedule(static)
   for (std::size_t a = 0; a < grid_.active(); ++a) {
     AveragedNode node[block_nodes];
     gather_tiles<Dim, Shape>(grid_, a, averaged_tiles_.data(), node);
-    for (int n = 0; n < block_nodes; ++n)
-      averaged_[a * block_nodes + n] = node[n][1] > 0.0 ? node[n][0] / node[n][1] : 0.0;
+    for (int n = 0; n < block_nodes; ++n) averaged_[a * block_nodes + n] = node_mean(node[n]);
   }
   add_time(seconds_.volumetric, since);
 }
@@ -410,22 +411,30 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::update_stresses(double dt) {
   const auto since = Clock::now();
 #pragma omp parallel
   {
-    std::vector<double> trace;
+    std::vector<double> trace, shift;
 #pragma omp for schedule(static)
     for (std::size_t b = 0; b < grid_.occupied(); ++b) {
-      double mean[tile_nodes];
+      NodeMean mean[tile_nodes];
       if (averaging_) load_tile<Dim, Shape>(grid_, b, averaged_.data(), mean);
       double work = 0.0;
       for (const Run& run : grid_.runs(b)) {
         trace.resize(std::max(trace.size(), run.end - run.begin));
+        shift.resize(trace.size(), 0.0);
         if (constants_[run.material].averaged)
-          gather_volumetric<Dim, Shape>(P_, run.begin, run.end, corner(b), h1_, mean, trace.data());
+          gather_volumetric<Dim, Shape>(
+              P_, run.begin, run.end, corner(b), h1_,
+              std::min(0.5, options_.mean_stress_relaxation * dt * h1_ * wave_speed_[run.material]), mean, trace.data(),
+              shift.data());
         else
-          for (std::size_t p = run.begin; p < run.end; ++p) trace[p - run.begin] = trace_of(P_, p);
+          for (std::size_t p = run.begin; p < run.end; ++p) {
+            trace[p - run.begin] = trace_of(P_, p);
+            shift[p - run.begin] = 0.0;
+          }
         bool inverted = false;
         for (std::size_t i = 0; i < run.end - run.begin; ++i) inverted |= !(std::fabs(trace[i]) < 1.0);
-        work +=
-            inverted ? std::nan("") : update_stress(constants_[run.material], P_, run.begin, run.end, trace.data(), dt);
+        work += inverted
+                    ? std::nan("")
+                    : update_stress(constants_[run.material], P_, run.begin, run.end, trace.data(), shift.data(), dt);
       }
       dissipated_[b] = work;
     }

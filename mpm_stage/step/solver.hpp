@@ -23,11 +23,12 @@ struct SolverOptions {
   TransferName transfer = TransferName::apic;
   double flip_share = 0.99;  // 1, of FLIP in the FLIP/PIC blend
   bool volumetric_average = true;
-  double courant = 0.5;        // 1, dt = courant h / max(c + |v|)
-  double maximum_step = 1e30;  // s
-  double contact_reach = 0.5;  // cells: nodes up to this distance above the ground belong to it
-  double local_damping = 0.0;  // 1, Cundall's
-  double mass_cutoff = 1e-10;  // 1, relative to the mean particle mass
+  double mean_stress_relaxation = 0.5;  // 1, of the mean stress towards its average, per h / c
+  double courant = 0.5;                 // 1, dt = courant h / max(c + |v|)
+  double maximum_step = 1e30;           // s
+  double contact_reach = 0.5;           // cells: nodes up to this distance above the ground belong to it
+  double local_damping = 0.0;           // 1, Cundall's
+  double mass_cutoff = 1e-10;           // 1, relative to the mean particle mass
 };
 
 // Work done since the start, J (per metre in plane strain), each counted as energy taken from the particles except
