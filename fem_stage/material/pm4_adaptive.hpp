@@ -56,9 +56,13 @@ struct StepStart {
   Pm4Moduli moduli;
   Deviator n;  // of the yield cone
   Pm4Coefficients c;
-  double beta = 0.0;    // sqrt(1/2) (M_b - m): alpha^b = beta n
-  double p_star = 0.0;  // max(p, p_min)
-  double n_r = 0.0;     // n:r
+  double beta = 0.0;                // sqrt(1/2) (M_b - m): alpha^b = beta n
+  double p_star = 0.0;              // max(p, p_min)
+  double n_r = 0.0;                 // n:r
+  double alpha_n = 0.0;             // alpha:n
+  double hardening_squared = 0.0;   // (H/p*)^2
+  double inverse_B = 0.0;           // 1/|B|
+  double inverse_resistance = 0.0;  // of the explicit loading index, 1/Pa
 };
 
 template <class Law>
@@ -72,6 +76,13 @@ StepStart step_start(const Law& law, const Pm4PointConstants& point, const Pm4St
   out.beta = sqrt_half * (surfaces.M_b - law.m);
   out.p_star = std::max(v.p, point.p_min);
   out.n_r = contract(n, v.s) / v.p;
+  out.alpha_n = out.beta - out.c.B;
+  out.hardening_squared = square(out.c.H / out.p_star);
+  const double size_B = std::max(std::fabs(out.c.B), 1e-14);
+  out.inverse_B = 1.0 / size_B;
+  const double resistance =
+      2.0 * moduli.G + out.c.H * std::sqrt(size_B) - moduli.K * out.c.dilatancy.at(out.p_star) * out.n_r;
+  out.inverse_resistance = 1.0 / std::max(resistance, 0.1 * moduli.G);
   return out;
 }
 
@@ -99,8 +110,9 @@ ImplicitStep implicit_euler(const Law& law, const Pm4PointConstants& point, cons
   out.v.p = std::max(p_elastic, floor);
   out.n = start.n;
   const double p_start = std::max(p_trial, floor);
-  const double excess = norm(s_trial - p_start * v.alpha) - cone * p_start;
-  if (excess <= 0.0) {
+  const Deviator radius = s_trial - p_start * v.alpha;
+  const double radius_squared = contract(radius, radius);
+  if (radius_squared <= square(cone * p_start)) {
     if (left_to_alpha > 0.0 && yield_function(law.m, out.v.p, out.v.s, out.v.alpha) > 0.0) {
       out.n = cone_normal(out.v.p, out.v.s, out.v.alpha);
       recentre_cone(law, out.v);
@@ -113,20 +125,20 @@ ImplicitStep implicit_euler(const Law& law, const Pm4PointConstants& point, cons
   double w = 0.0;
   double p = p_start;
   Deviator n = start.n;
-  double alpha_n = contract(v.alpha, n);
-  const double resistance = 2.0 * G + c.H * std::sqrt(std::fabs(c.B)) - K * c.dilatancy.at(start.p_star) * start.n_r;
-  double x = excess / std::max(resistance, 0.1 * G);  // the explicit loading index
-  const double x_most = 2.0 * length(strain) + (excess + cone * p_start) / G;
-  const double hardening = c.H / start.p_star;
+  double inverse_B = start.inverse_B;
+  const double x_most = 2.0 * length(strain) + std::sqrt(radius_squared) / G;
+  // The first guess is the explicit loading index; a share of the most possible where the normal turns right round.
+  const double L = (2.0 * G * contract(n, strain.deviator) - start.n_r * (p_trial - v.p)) * start.inverse_resistance;
+  double x = std::clamp(L, 1e-3 * x_most, x_most);
   for (int iteration = 0; iteration < 20; ++iteration) {
-    const double g2 = square(hardening * x) / std::max(std::fabs(beta - alpha_n), 1e-14);
+    const double g2 = start.hardening_squared * x * x * inverse_B;
     w = 0.5 * (g2 + std::sqrt(g2 * (g2 + 4.0)));
     p = std::max(implicit_pressure(c.dilatancy, p_trial, x * K), floor);
     const double share = 1.0 / (1.0 + w);
     const Deviator eta = s_trial - (p * share) * v.alpha;
     const double eta_length = norm(eta);
     n = (1.0 / std::max(eta_length, 1e-300)) * eta;
-    alpha_n = contract(v.alpha, n);
+    const double alpha_n = contract(v.alpha, n);
     const double held = w * share * beta + cone;
     const double F = eta_length - 2.0 * G * x - p * held;
     if (std::fabs(F) <= 1e-7 * p) break;
@@ -135,6 +147,7 @@ ImplicitStep implicit_euler(const Law& law, const Pm4PointConstants& point, cons
     const double x_dp = p - p_start;
     const double x_slope = -2.0 * G * x - p * x_dw * share * share * (beta - alpha_n) - x_dp * (share * alpha_n + held);
     x = std::clamp(x - F * x / std::min(x_slope, -0.2 * G * x), 1e-3 * x, x_most);
+    inverse_B = 1.0 / std::max(std::fabs(beta - alpha_n), 1e-14);
   }
   out.plastic = true;
   out.v.p = std::max(p + (p_elastic - p_trial), floor);
