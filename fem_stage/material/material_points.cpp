@@ -1,5 +1,6 @@
 #include "fem_stage/material/material_points.hpp"
 
+#include <fmt/core.h>
 #include <omp.h>
 
 #include <algorithm>
@@ -181,9 +182,8 @@ UpdateReport MaterialPoints::update(std::span<const double> strain_increment, st
   if (failed != std::numeric_limits<int>::max()) {
     report.failed_point = failed;
     const double* e = strain_increment.data() + 3 * static_cast<std::size_t>(failed);
-    report.reason = "material '" + groups_->materials[groups_->material_of_point[failed]].name +
-                    "' could not integrate the strain increment (" + std::to_string(e[0]) + ", " +
-                    std::to_string(e[1]) + ", " + std::to_string(e[2]) + ")";
+    report.reason = fmt::format("material '{}' could not integrate the strain increment ({:.4g}, {:.4g}, {:.4g})",
+                                groups_->materials[groups_->material_of_point[failed]].name, e[0], e[1], e[2]);
   }
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;

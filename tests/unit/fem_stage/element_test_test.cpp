@@ -1,5 +1,6 @@
 // The element driver and the calibration, through their files.
 #include <doctest/doctest.h>
+#include <fmt/core.h>
 
 #include <filesystem>
 #include <fstream>
@@ -112,9 +113,9 @@ TEST_CASE("calibration: finds h_po and Q again from the strengths they give") {
   std::string targets;
   for (const double vertical : {17e3, 186e3}) {
     strength.vertical_effective_stress = vertical;
-    targets += (targets.empty() ? "" : ",") + std::string("{\"vertical_effective_stress\": ") +
-               std::to_string(vertical) +
-               ", \"shear_stress\": " + std::to_string(simulate(strength).rows.back().shear_stress) + "}";
+    if (!targets.empty()) targets += ", ";
+    targets += fmt::format("{{\"vertical_effective_stress\": {}, \"shear_stress\": {}}}", vertical,
+                           simulate(strength).rows.back().shear_stress);
   }
   ElementTestCase cyclic;
   cyclic.material = {"", tailings()};

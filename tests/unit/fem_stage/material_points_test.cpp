@@ -158,6 +158,41 @@ TEST_CASE("material points: second initialisation forgets fabric; A_do and z_max
   CHECK_THROWS_AS(points.internal_variable("fabrics", fabric), InputError);
 }
 
+// F_sed = F_min + (1 - F_min) p/(20 p_sed), p_sed = p_A/5 z_cum/(z_cum + z_max) <1 - M_cur/M_d>^(1/4).
+TEST_CASE("material points: post-shaking moduli of PM4Sand are reduced by fabric at low stress, and come back") {
+  MaterialPoints points(four_materials(), {2});
+  points.set_stress(std::vector<double>{-50e3, -100e3, -50e3, 0.0});
+  points.start_plastic_stage(true);
+  std::vector<double> stress(4), z_cum(1), ratio(1), bulk(1), shear(1), reduced(1);
+  for (int i = 0; i < 40; ++i) {
+    for (int k = 0; k < 40; ++k) {
+      points.update(std::vector<double>{0.0, 0.0, i % 2 == 0 ? 5e-4 : -5e-4}, stress);
+      points.commit();
+    }
+  }
+  while (std::fabs(stress[3]) > 100.0) {  // back to hardly any shear stress
+    points.update(std::vector<double>{0.0, 0.0, stress[3] > 0.0 ? -2e-6 : 2e-6}, stress);
+    points.commit();
+  }
+  points.internal_variable("fabric_cumulative", z_cum);
+  points.internal_variable("stress_ratio", ratio);
+  REQUIRE(z_cum[0] > 0.1);
+  points.elastic_moduli(bulk, shear);
+  points.set_post_shaking(true);
+  points.elastic_moduli(bulk, reduced);
+  const double p = -0.5 * (stress[0] + stress[1]), p_A = 101.3e3;
+  const auto fresh = drive(tailings(), 50e3, 100e3);
+  const double M_d = fresh.law.surfaces(fresh.constants, p, 0.35).M_d;
+  const double z_max = fresh.constants.z_max, F_min = 0.03 * std::exp(2.6 * 0.35);
+  const double p_sed = 0.2 * p_A * z_cum[0] / (z_cum[0] + z_max) * std::pow(1.0 - ratio[0] / M_d, 0.25);
+  CHECK(reduced[0] / shear[0] ==
+        doctest::Approx(std::min(1.0, F_min + (1.0 - F_min) * p / (20.0 * p_sed))).epsilon(1e-6));
+  CHECK(reduced[0] < 0.5 * shear[0]);
+  points.set_post_shaking(false);
+  points.elastic_moduli(bulk, reduced);
+  CHECK(reduced[0] == shear[0]);
+}
+
 TEST_CASE("material points: density, porosity, bad indices, a strain that is not a number") {
   MaterialPoints points(four_materials(), {0, 1, 2, 3});
   std::vector<double> value(4);
