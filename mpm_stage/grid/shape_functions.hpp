@@ -5,6 +5,8 @@
 //   w[k] weight,  d[k] derivative with respect to X,  m[k] = w[k] (k - X) first moment.
 // `shift`: a point belongs to the block that holds floor(X + shift). `apic`: D^-1 h^2 of the affine velocity (Jiang et
 // al. 2015, section 5.3), 0 where D is not a constant; then the velocity gradient takes the place of the affine matrix.
+// `mass_cutoff`: nodes with less than this share of a particle's mass are left out. Where the squared slope over the
+// weight has no bound as the weight goes to 0 (linear, GIMP), such nodes are thrown about by ever larger accelerations.
 #pragma once
 
 #include <cmath>
@@ -16,6 +18,7 @@ struct LinearShape {
   static constexpr int support = 2;
   static constexpr double shift = 0.0;
   static constexpr double apic = 0.0;
+  static constexpr double mass_cutoff = 1e-2;
 
   static inline int evaluate(double X, double* w, double* d, double* m) {
     const int base = static_cast<int>(X);
@@ -36,6 +39,7 @@ struct QuadraticShape {
   static constexpr int support = 3;
   static constexpr double shift = 0.5;
   static constexpr double apic = 4.0;
+  static constexpr double mass_cutoff = 1e-10;
 
   static inline int evaluate(double X, double* w, double* d, double* m) {
     const int centre = static_cast<int>(X + 0.5);
@@ -59,6 +63,7 @@ struct CubicShape {
   static constexpr int support = 4;
   static constexpr double shift = 0.0;
   static constexpr double apic = 3.0;
+  static constexpr double mass_cutoff = 1e-10;
 
   static inline int evaluate(double X, double* w, double* d, double* m) {
     const int cell = static_cast<int>(X);
@@ -82,6 +87,7 @@ struct GimpShape {
   static constexpr int support = 3;
   static constexpr double shift = 0.5;
   static constexpr double apic = 0.0;
+  static constexpr double mass_cutoff = 1e-4;
 
   static inline int evaluate(double X, double* w, double* d, double* m) {
     constexpr double l = 0.25;  // half the particle's width, in cells

@@ -62,7 +62,7 @@ void read_scheme(const CaseNode& root, Scene& scene) {
   o.mean_stress_relaxation =
       scheme.number_or("mean_stress_relaxation", "1", Range::between(0.0, 1.0), o.mean_stress_relaxation);
   o.contact_reach = scheme.number_or("contact_reach", "cells", Range::between(0.0, 1.0), o.contact_reach);
-  o.mass_cutoff = scheme.number_or("mass_cutoff", "1", Range::between(0.0, 0.1), o.mass_cutoff);
+  if (const auto cutoff = scheme.number_if("mass_cutoff", "1", Range::between(0.0, 0.1))) o.mass_cutoff = *cutoff;
   o.local_damping = root.object_or_empty("damping").number_or("local", "1", Range::between(0.0, 0.99), 0.0);
 }
 

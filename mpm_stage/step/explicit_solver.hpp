@@ -45,7 +45,8 @@ class ExplicitSolver final : public Solver<Dim> {
         ground_(terrain, options.contact_reach * cell_size) {
     double mass = 0.0;
     for (const double m : P_.mass) mass += m;
-    mass_cutoff_ = options.mass_cutoff * mass / static_cast<double>(std::max<std::size_t>(1, P_.count()));
+    mass_cutoff_ = (options.mass_cutoff < 0.0 ? Shape::mass_cutoff : options.mass_cutoff) * mass /
+                   static_cast<double>(std::max<std::size_t>(1, P_.count()));
     averaging_ = false;
     for (const auto& m : materials_) {
       constants_.push_back(constants_of(m, cell_size));

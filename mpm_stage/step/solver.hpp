@@ -28,7 +28,7 @@ struct SolverOptions {
   double maximum_step = 1e30;           // s
   double contact_reach = 0.5;           // cells: nodes up to this distance above the ground belong to it
   double local_damping = 0.0;           // 1, Cundall's
-  double mass_cutoff = 1e-10;           // 1, relative to the mean particle mass
+  double mass_cutoff = -1.0;            // 1, relative to the mean particle mass; negative: the shape function's own
 };
 
 // Work done since the start, J (per metre in plane strain), each counted as energy taken from the particles except
