@@ -18,7 +18,7 @@ struct LinearShape {
   static constexpr int support = 2;
   static constexpr double shift = 0.0;
   static constexpr double apic = 0.0;
-  static constexpr double mass_cutoff = 1e-2;
+  static constexpr double mass_cutoff = 1e-6;
 
   static inline int evaluate(double X, double* w, double* d, double* m) {
     const int base = static_cast<int>(X);
@@ -39,7 +39,7 @@ struct QuadraticShape {
   static constexpr int support = 3;
   static constexpr double shift = 0.5;
   static constexpr double apic = 4.0;
-  static constexpr double mass_cutoff = 1e-10;
+  static constexpr double mass_cutoff = 1e-18;
 
   static inline int evaluate(double X, double* w, double* d, double* m) {
     const int centre = static_cast<int>(X + 0.5);
@@ -63,7 +63,7 @@ struct CubicShape {
   static constexpr int support = 4;
   static constexpr double shift = 0.0;
   static constexpr double apic = 3.0;
-  static constexpr double mass_cutoff = 1e-10;
+  static constexpr double mass_cutoff = 1e-18;
 
   static inline int evaluate(double X, double* w, double* d, double* m) {
     const int cell = static_cast<int>(X);
@@ -87,7 +87,7 @@ struct GimpShape {
   static constexpr int support = 3;
   static constexpr double shift = 0.5;
   static constexpr double apic = 0.0;
-  static constexpr double mass_cutoff = 1e-4;
+  static constexpr double mass_cutoff = 1e-8;
 
   static inline int evaluate(double X, double* w, double* d, double* m) {
     constexpr double l = 0.25;  // half the particle's width, in cells
