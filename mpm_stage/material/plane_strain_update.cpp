@@ -213,6 +213,8 @@ double elastic_energy(const MaterialConstants& k, const Particles<2>& P, std::si
     }
     if (k.pore_pressure == PorePressure::undrained)
       energy += 0.5 * P.pore_pressure[p] * P.pore_pressure[p] / k.pore_stiffness * P.volume[p];
+    else if (k.pore_pressure == PorePressure::frozen)
+      energy -= P.pore_pressure[p] * P.volume[p];
   }
   return energy;
 }

@@ -112,6 +112,8 @@ double elastic_energy(const MaterialConstants& k, const Particles<3>& P, std::si
     if (k.model != Model::newtonian_fluid) density += 0.25 * (s - mean * Matrix::Identity()).squaredNorm() / k.mu;
     if (k.pore_pressure == PorePressure::undrained)
       density += 0.5 * P.pore_pressure[p] * P.pore_pressure[p] / k.pore_stiffness;
+    else if (k.pore_pressure == PorePressure::frozen)
+      density -= P.pore_pressure[p];
     energy += density * P.volume[p];
   }
   return energy;

@@ -18,7 +18,8 @@ double update_stress(const MaterialConstants& material, Particles<3>& P, std::si
                      const double* trace, const double* shift, double dt);
 
 // Recoverable energy of the stresses, J: s : C^-1 : s / 2 (elastic and elasto-plastic solids), K (ln J)^2 / 2 of the
-// fluid, u^2 / (2 K_f / n) of undrained pore water.
+// fluid, u^2 / (2 K_f / n) of undrained pore water, and -u V of frozen pore water, which pushes with the same pressure
+// however far its particle expands.
 double elastic_energy(const MaterialConstants& material, const Particles<2>& P, std::size_t begin, std::size_t end);
 double elastic_energy(const MaterialConstants& material, const Particles<3>& P, std::size_t begin, std::size_t end);
 
