@@ -91,7 +91,7 @@ def plot_displacement(plt, snapshot, options, output):
     axis.set_title(
         f"displacement at the end of the FEM phase, t = {snapshot.time:g} s (largest {size.max():.2f} m; grey: before)"
     )
-    style.colour_bar(figure, mappable, axis, "displacement relative to the base (m)")
+    style.colour_bar(figure, mappable, axis, "displacement relative to the base (m)", extend="max")
     style.save(figure, output)
 
 

@@ -75,13 +75,23 @@ def draw_phreatic_line(axis, snapshot, label=True):
         axis.plot(*snapshot.phreatic_line.T, color="#1f5fbf", lw=1.2, ls="--", label="phreatic line" if label else None)
 
 
-def draw_particles(figure, axis, particles, values, area=None, **options):
-    """Particles as squares of their own size; `values` are numbers (with cmap, vmin, vmax) or colours."""
-    if area is None:
-        area = 1.2 * style.marker_area(figure, axis, particles.size)
+def draw_particles(figure, axis, particles, values, **options):
+    """Particles as squares of their own volume; `values` are numbers (with cmap, vmin, vmax) or colours."""
     return axis.scatter(
-        particles.position[:, 0], particles.position[:, 1], c=values, s=area, marker="s", linewidths=0, **options
+        particles.position[:, 0],
+        particles.position[:, 1],
+        c=values,
+        s=marker_areas(figure, axis, particles),
+        marker="s",
+        linewidths=0,
+        **options,
     )
+
+
+def marker_areas(figure, axis, particles):
+    """A little more than each particle's own area, so that no grid of gaps shows between them."""
+    volume = np.minimum(particles.data["volume"], 4.0 * particles.size**2)  # a particle that has blown up hides nothing
+    return 1.4 * style.marker_area(figure, axis, 1.0) * volume
 
 
 def draw_terrain(axis, particles, floor):

@@ -104,6 +104,6 @@ def marker_area(figure, axis, size):
     return max(((pixels[1, 0] - pixels[0, 0]) * 72.0 / figure.dpi) ** 2, 0.3)
 
 
-def colour_bar(figure, mappable, axes, label):
+def colour_bar(figure, mappable, axes, label, extend="neither"):
     """A slim bar below the panels, so that these keep the picture's width."""
-    return figure.colorbar(mappable, ax=axes, orientation="horizontal", shrink=0.45, aspect=40, pad=0.02, label=label)
+    return figure.colorbar(mappable, ax=axes, orientation="horizontal", shrink=0.45, aspect=40, pad=0.02, label=label, extend=extend)

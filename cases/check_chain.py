@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+"""Checks finished results of the chain: each stage's files are there, complete, and hold physics and not noise.
+
+    check_chain.py out/smoke/template out/smoke/mochikoshi-coarse
+"""
+
+import argparse
+import json
+import struct
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent / "plot"))
+import chain_files as chain  # noqa: E402
+
+PICTURES = ["mesh", "velocity", "excess_pore_pressure_ratio", "displacement_fem", "fem_series", "handover"]
+PICTURES += ["displacement_mpm", "runout", "runout_front", "energy", "overview"]
+
+
+def picture_width(path):
+    """Width in pixels of a PNG, 0 when it is none."""
+    head = path.read_bytes()[:24] if path.exists() else b""
+    return struct.unpack(">I", head[16:20])[0] if head[:8] == b"\x89PNG\r\n\x1a\n" else 0
+
+
+def problems(folder):
+    """Everything that is wrong with the results in `folder`."""
+    fem = json.loads((folder / "fem" / "summary.json").read_text())
+    mpm = json.loads((folder / "mpm" / "summary.json").read_text())
+    quality = chain.series(folder / "fem" / "quality.csv")
+    particles = chain.Particles(folder / "particles.h5")
+    frames = [chain.Particles(path) for path in chain.frames(folder / "mpm")[:: max(1, len(chain.frames(folder / "mpm")) - 1)]]
+    energy = mpm["energy"]
+    lost = abs(1.0 - mpm["mass_kg"] / particles.data["mass"].sum()) if not mpm["particles_removed"] else 0.0
+    checks = [
+        (fem["finished"], "fem_stage did not finish"),
+        (fem["inverted_elements"] == 0 and fem["min_scaled_jacobian"] > 0.0, "elements are inverted"),
+        (abs(fem["energy_J"]["residual_of_largest"]) < 0.05, "fem_stage's energy balance is open by more than 5 %"),
+        (quality["mean_excess_pore_pressure_ratio"][0] == 0.0, "there is excess pore pressure before the shaking"),
+        (quality["mean_excess_pore_pressure_ratio"][-1] > 0.1, "shaking raised no pore pressure"),
+        (quality["largest_displacement_m"][-1] > 0.01, "shaking moved nothing"),
+        (abs(particles.time - frames[0].time) < 1e-9, "the first frame is not the hand-over's state"),
+        ((particles.data["volume"] > 0.0).all(), "particles without volume"),
+        (mpm["stop_reason"] in ("at rest", "end time"), f"mpm_stage: {mpm['stop_reason']}"),
+        (lost < 1e-12, f"mpm_stage lost {lost:.1e} of the mass"),
+        (
+            abs(energy["residual_J"]) <= 0.05 * max(energy["plastic_J"] + energy["friction_J"], energy["total_at_start_J"] * 1e-3),
+            f"mpm_stage's energy balance is open by {energy['residual_J']:.3g} J",
+        ),
+    ]
+    found = [text for good, text in checks if not good]
+    found += [f"no picture {name}.png" for name in PICTURES if picture_width(folder / "figures" / f"{name}.png") < 600]
+    return found
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folders", type=Path, nargs="+")
+    wrong = 0
+    for folder in parser.parse_args().folders:
+        found = problems(folder)
+        wrong += len(found)
+        for text in found:
+            print(f"{folder}: {text}", file=sys.stderr)
+        if not found:
+            print(f"{folder}: chain complete")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""Pictures of the MPM stage: the hand-over, the additional displacement, the runout in stages, its front and its energy.
+
+    mpm_figures.py out/mochikoshi/mpm --case cases/mochikoshi -o out/mochikoshi/figures
+"""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+import chain_files as chain
+import field_plot as fields
+import runout_plot as runout
+import style
+
+
+def plot_handover(plt, first, view, output):
+    figure, axis = plt.subplots(figsize=(style.WIDTH, style.panel_height(view) + 0.6))
+    runout.draw_materials(figure, axis, first, view)
+    axis.set_title(f"particles at the hand-over, t = {first.time:g} s: {len(first.position)}, {first.size:.2f} m apart")
+    axis.legend(handles=runout.legend_handles(first), loc="upper center", bbox_to_anchor=(0.5, -0.25), ncol=4)
+    style.save(figure, output)
+
+
+def plot_displacement(plt, first, last, view, options, output):
+    extra = last.data["displacement"] - runout.displacement_at_transfer(first, last)
+    size = np.hypot(extra[:, 0], extra[:, 1])
+    limit = options.get("displacement_scale", style.nice_limit(np.percentile(size, 99.9)))
+    figure, axis = plt.subplots(figsize=(style.WIDTH, style.panel_height(view) + 0.6))
+    fields.draw_terrain(axis, last, view[2] - 1.0)
+    style.true_aspect(axis, view)
+    scale = {"cmap": style.DISPLACEMENT_COLOURS, "vmin": 0.0, "vmax": limit}
+    mappable = fields.draw_particles(figure, axis, last, size, **scale)
+    since = "after the hand-over" if extra is not last.data["displacement"] else "since the start of the motion"
+    axis.set_title(f"displacement {since}, t = {last.time:g} s (largest {size.max():.1f} m)")
+    style.colour_bar(figure, mappable, axis, "additional displacement (m)", extend="max")
+    style.save(figure, output)
+
+
+def plot_stages(plt, paths, view, output):
+    """Four moments: hand-over, an eighth, a third and the end of the run."""
+    last = len(paths) - 1
+    chosen = sorted({0, max(1, last // 8), max(1, last // 3), last}) if last > 0 else [0]
+    height = style.panel_height(view, extra=0.35)
+    figure, axes = plt.subplots(
+        len(chosen), 1, figsize=(style.WIDTH, len(chosen) * height + 1.0), sharex=True, squeeze=False
+    )
+    for axis, index in zip(axes[:, 0], chosen):
+        particles = chain.Particles(paths[index])
+        runout.draw_materials(figure, axis, particles, view)
+        axis.set_xlabel("")
+        axis.text(0.99, 0.94, f"t = {particles.time:g} s", transform=axis.transAxes, ha="right", va="top")
+    axes[-1, 0].set_xlabel("x (m)")
+    axes[-1, 0].legend(handles=runout.legend_handles(particles), loc="upper center", bbox_to_anchor=(0.5, -0.3), ncol=4)
+    style.save(figure, output)
+
+
+def plot_front(plt, front, paths, start, output):
+    figure, axes = plt.subplots(3, 1, figsize=(9, 8), sharex=True)
+    t = start + front["time_s"]
+    axes[0].plot(t, front["robust_front_m"], "C0", label="front without stragglers (front_quantile)")
+    axes[0].plot(*runout.flow_front(paths), "C3", label="of what has moved more than 1 m since the hand-over")
+    axes[0].plot(t, front["front_m"], color="0.6", lw=0.8, label="outermost particle")
+    axes[0].set(ylabel="front, x (m)", title="runout")
+    axes[0].legend(loc="best")
+    axes[1].plot(t, front["top_m"], "C0", label="highest point of the moving mass")
+    for name in front:
+        if name.endswith("_y_m") and name != "centre_y_m":
+            axes[1].plot(t, front[name], lw=1.0, label=name[: -len("_y_m")].replace("_", " "))
+    axes[1].set_ylabel("y (m)")
+    axes[1].legend(loc="best")
+    axes[2].semilogy(t, np.maximum(front["rms_speed_m_s"], 1e-6), "C0", label="root mean square")
+    axes[2].semilogy(t, np.maximum(front["maximum_speed_m_s"], 1e-6), color="0.6", lw=0.8, label="largest")
+    axes[2].set(ylabel="speed (m/s)", xlabel="time since the start of shaking (s)")
+    axes[2].legend(loc="best")
+    for axis in axes:
+        axis.grid(alpha=0.3)
+    style.save(figure, output)
+
+
+def plot_energy(plt, ledger, start, output):
+    names = {
+        "kinetic_J": "kinetic",
+        "elastic_J": "elastic (change)",
+        "gravitational_J": "gravitational (change)",
+        "plastic_J": "dissipated in the soil",
+        "friction_J": "dissipated on the bed",
+        "damping_J": "damping",
+        "external_J": "external work",
+    }
+    figure, axis = plt.subplots(figsize=(9, 4.6))
+    t = start + ledger["time_s"]
+    for column, label in names.items():
+        if column not in ledger:
+            continue
+        values = ledger[column]
+        if "change" in label:
+            values = values - values[0]
+        if np.abs(values).max() > 0.0:
+            axis.plot(t, values / 1e6, label=label, lw=1.3)
+    axis.plot(t, ledger["residual_J"] / 1e6, "k:", label="residual of the balance")
+    axis.axhline(0.0, color="0.6", lw=0.8)
+    axis.set(xlabel="time since the start of shaking (s)", ylabel="energy per metre of dam (MJ/m)", title="energy ledger")
+    axis.grid(alpha=0.3)
+    axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    style.save(figure, output)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, help="results of mpm_stage")
+    parser.add_argument("--case", type=Path, help="the case's folder, for plot.json")
+    parser.add_argument("-o", "--output", type=Path, required=True)
+    arguments = parser.parse_args()
+    plt = style.pyplot()
+    options = chain.plot_options(arguments.case)
+    first, last, paths = runout.first_and_last(arguments.folder)
+    view = runout.runout_view(first, last, options)
+    plot_handover(plt, first, view, arguments.output / "handover.png")
+    plot_displacement(plt, first, last, view, options, arguments.output / "displacement_mpm.png")
+    plot_stages(plt, paths, view, arguments.output / "runout.png")
+    front = chain.series(arguments.folder / "front.csv")
+    if front is not None:
+        plot_front(plt, front, paths, first.time, arguments.output / "runout_front.png")
+    ledger = chain.series(arguments.folder / "ledger.csv")
+    if ledger is not None:
+        plot_energy(plt, ledger, first.time, arguments.output / "energy.png")
+
+
+if __name__ == "__main__":
+    main()

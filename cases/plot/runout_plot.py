@@ -1,0 +1,84 @@
+"""The runout's panels: particles by material over the terrain. Shared by the pictures, the film and the overview."""
+
+import numpy as np
+
+import chain_files as chain
+import field_plot as fields
+import style
+
+
+def runout_view(first, last, options):
+    """plot.json's runout_view, grown to hold the last frame's front; or what moved, with some ground before it."""
+    moved = np.hypot(*(last.data["displacement"] - displacement_at_transfer(first, last))[:, :2].T)
+    shown = moved > max(0.02 * moved.max(), 1e-9)
+    reach = last.position[shown] if shown.any() else last.position
+    low, high = last.position.min(axis=0), last.position.max(axis=0)
+    high = np.maximum(high, first.position.max(axis=0))
+    if "runout_view" in options:
+        view = list(options["runout_view"])
+        view[1] = max(view[1], reach[:, 0].max() + 20.0)
+        return view
+    height = high[1] - low[1]
+    return [
+        max(low[0], reach[:, 0].min() - 2.0 * height),
+        reach[:, 0].max() + 2.0 * height,
+        low[1] - 0.15 * height,
+        high[1] + 0.2 * height,
+    ]
+
+
+def displacement_at_transfer(first, last):
+    """The first frame's displacement, for every particle of the last: frames list particles in the same order."""
+    if len(first.position) == len(last.position):
+        return first.data["displacement"]
+    # Particles have left the domain: rows no longer correspond, and only the displacement since the motion is known.
+    return np.zeros_like(last.data["displacement"])
+
+
+def colours_of(particles):
+    table = style.material_colours(particles.material_names)
+    return np.array([table[name] for name in particles.material_names])[particles.material()]
+
+
+def legend_handles(particles):
+    """One patch per material; liquefied ones say their mean strength."""
+    from matplotlib.patches import Patch
+
+    table = style.material_colours(particles.material_names)
+    handles = []
+    strength = particles.data.get("residual_strength")
+    for index, name in enumerate(particles.material_names):
+        mask = particles.material() == index
+        if not mask.any():
+            continue
+        label = name.replace("_", " ")
+        if strength is not None and strength[mask].max() > 0.0:
+            label = f"liquefied, $s_R$ {strength[mask].mean() / 1e3:.1f} kPa"
+        handles.append(Patch(color=table[name], label=label))
+    return handles
+
+
+def draw_materials(figure, axis, particles, view):
+    fields.draw_terrain(axis, particles, view[2] - 1.0)
+    style.true_aspect(axis, view)
+    return fields.draw_particles(figure, axis, particles, colours_of(particles))
+
+
+def first_and_last(folder):
+    paths = chain.frames(folder)
+    return chain.Particles(paths[0]), chain.Particles(paths[-1]), paths
+
+
+def flow_front(paths, moved=1.0):
+    """Times (s) and the largest x (m) of what has moved more than `moved` metres since the hand-over: the front of the
+    flow itself, which may still lie above a part of the dam that stands."""
+    first = chain.Particles(paths[0])
+    times, fronts = [], []
+    for path in paths:
+        particles = chain.Particles(path)
+        extra = particles.data["displacement"] - displacement_at_transfer(first, particles)
+        shown = np.hypot(extra[:, 0], extra[:, 1]) > moved
+        if shown.any():
+            times.append(particles.time)
+            fronts.append(np.quantile(particles.position[shown, 0], 0.999))
+    return np.array(times), np.array(fronts)
