@@ -182,13 +182,15 @@ int main(int argc, char** argv) {
   CLI::App app{"Runout of liquefied soil by the material point method", "mpm_stage"};
   add_common_options(app);
   std::filesystem::path case_path, output, particles;
+  std::string size;
   CLI::App* command = app.add_subcommand("run", "Run a case file (mpm.json)");
   command->add_option("case", case_path, "case file (JSON)")->required();
   command->add_option("-o,--output", output, "folder for the results")->required();
   command->add_option("--particles", particles, "particles file, in place of the case file's particles_file");
+  command->add_option("--size", size, "entry of /sizes in the case (coarse, default, fine): its cell size");
   command->callback([&] {
     const CaseFile file(case_path);
-    const Scene scene = read_scene(file, particles);
+    const Scene scene = read_scene(file, particles, size);
     file.finish();
     echo_options(case_path.string(), file.echo());
     Provenance provenance;

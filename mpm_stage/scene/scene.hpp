@@ -79,7 +79,7 @@ struct Scene {
 };
 
 // Reads a scene. `particles_override` takes the place of the case file's "particles_file". Throws InputError.
-Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_override);
+Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_override, const std::string& size = {});
 
 // Parts of read_scene, each in its own file.
 Material read_material(const std::string& name, const CaseNode& node, double residual_factor);

@@ -181,12 +181,32 @@ std::vector<Material> order_materials(const CaseFile& file, const std::vector<Ma
 
 }  // namespace
 
-Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_override) {
+namespace {
+
+// "grid"/"cell_size", unless "sizes" has another for the size chosen: {"coarse": {"cell_size": 2}, ...}.
+double read_cell_size(const CaseNode& root, const std::string& size) {
+  double cell_size = root.object("grid").number("cell_size", "m", Range::positive());
+  std::vector<std::string> names;
+  for (const auto& [name, node] : root.object_or_empty("sizes").members()) {
+    const double value = node.number("cell_size", "m", Range::positive());
+    if (name == size) cell_size = value;
+    names.push_back(name);
+  }
+  if (!names.empty() && !size.empty() && size != "default" &&
+      std::find(names.begin(), names.end(), size) == names.end())
+    root.fail("sizes", fmt::format("has no '{}' (asked for by --size).{} It has: {}", size, did_you_mean(size, names),
+                                   joined(names)));
+  return cell_size;
+}
+
+}  // namespace
+
+Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_override, const std::string& size) {
   const CaseNode root = file.root();
   Scene scene;
   scene.title = root.text_or("title", file.path().parent_path().filename().string());
   scene.dimension = static_cast<int>(root.integer_or("dimension", 2, 3, 2));
-  scene.cell_size = root.object("grid").number("cell_size", "m", Range::positive());
+  scene.cell_size = read_cell_size(root, size);
   const auto dimension = static_cast<std::size_t>(scene.dimension);
   std::vector<double> down(dimension, 0.0);
   down[1] = -9.81;
