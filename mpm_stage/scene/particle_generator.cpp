@@ -39,7 +39,7 @@ struct Filling {
   std::array<double, 3> velocity{};
   double spin = 0.0;  // 1/s, about the centre, in the x-y plane
   std::array<double, 3> centre{};
-  std::vector<double> wave;  // amplitude (m/s), wave number (1/m), axis of motion, axis of variation
+  std::vector<double> wave;  // amplitude (m/s), wave number (1/m), axes of motion and variation, phase
   bool geostatic = false;
   std::array<double, 2> surface{};     // m, a point of the free surface
   double slope = 0.0;                  // radians, of the surface, positive where it falls with x
@@ -91,7 +91,8 @@ Filling read_filling(const CaseNode& node, int dimension, double h, const std::a
   if (const auto wave = node.object_if("velocity_wave")) {
     f.wave = {wave->number("amplitude", "m/s", Range::any()), wave->number("wave_number", "1/m", Range::any()),
               static_cast<double>(wave->integer_or("motion_axis", 0, dimension - 1, 0)),
-              static_cast<double>(wave->integer_or("variation_axis", 0, dimension - 1, 0))};
+              static_cast<double>(wave->integer_or("variation_axis", 0, dimension - 1, 0)),
+              wave->number_or("phase", "rad", Range::any(), 0.0)};
   }
   if (const auto stress = node.object_if("stress")) {
     f.geostatic = true;
@@ -128,7 +129,8 @@ void fill(const Filling& f, int dimension, int material, double density, const s
         v[1] += f.spin * (x[0] - f.centre[0]);
         if (!f.wave.empty())
           v[static_cast<int>(f.wave[2])] +=
-              f.wave[0] * std::sin(f.wave[1] * (x[static_cast<int>(f.wave[3])] - f.low[static_cast<int>(f.wave[3])]));
+              f.wave[0] *
+              std::sin(f.wave[1] * (x[static_cast<int>(f.wave[3])] - f.low[static_cast<int>(f.wave[3])]) + f.wave[4]);
         if (f.rotation != 0.0) {
           const double c = std::cos(f.rotation), s = std::sin(f.rotation), dx = x[0] - f.low[0], dy = x[1] - f.low[1];
           x[0] = f.low[0] + c * dx - s * dy;

@@ -38,7 +38,7 @@ inline double apply_local_damping(double alpha, double dt, const std::array<doub
     if (before[d] == 0.0) continue;
     const double taken = std::copysign(alpha * std::fabs(a) * dt, before[d]);
     const double v = after[d] - taken;
-    lost += 0.5 * (after[d] * after[d] - v * v);
+    lost += taken * v;
     after[d] = v;
   }
   return lost;
