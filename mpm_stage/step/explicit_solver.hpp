@@ -18,6 +18,7 @@
 #include "common/error.hpp"
 #include "mpm_stage/boundary/contact_gap.hpp"
 #include "mpm_stage/boundary/ground_friction.hpp"
+#include "mpm_stage/boundary/mirror_walls.hpp"
 #include "mpm_stage/grid/tiles.hpp"
 #include "mpm_stage/material/stress_update.hpp"
 #include "mpm_stage/step/grid_update.hpp"
@@ -159,6 +160,7 @@ class ExplicitSolver final : public Solver<Dim> {
   Walls<Dim> walls_;
   WallNodes<Dim> wall_nodes_;
   ContactNodes<Dim> ground_;
+  MirrorWalls<Dim> mirrors_;
   std::array<double, Dim> body_{};
   bool averaging_ = false, leaving_ = false;
   double mass_cutoff_ = 0.0, next_dt_ = 0.0, drift_ = 0.0, fastest_wave_ = 0.0, viscous_limit_ = 1e30;
@@ -166,6 +168,7 @@ class ExplicitSolver final : public Solver<Dim> {
 
   AlignedVector<Vec4> tiles_, forces_;     // per occupied block
   AlignedVector<Vec4> velocity_, change_;  // per active block
+  AlignedVector<Vec4> sums_, force_sums_;  // per active block, only with mirrors
   AlignedVector<AveragedNode> averaged_tiles_;
   AlignedVector<NodeMean> averaged_;
   std::vector<Gap> gap_tiles_;
@@ -205,6 +208,7 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::sort() {
   grid_.sort(P_, keep);
   if (grid_.occupied() == 0) throw ComputationError("no particle is left in the domain");
   ground_.update(grid_);
+  mirrors_.update(grid_, wall_nodes_, Shape::support == 4 ? 2 : 1);
   ++sorts_;
   drift_ = 0.0;
   leaving_ = false;
@@ -212,6 +216,10 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::sort() {
   if (Split) forces_.resize(tiles_.size());
   velocity_.resize(grid_.active() * block_nodes);
   if (Split) change_.resize(velocity_.size());
+  if (mirrors_.any()) {
+    sums_.resize(velocity_.size());
+    if (Split) force_sums_.resize(velocity_.size());
+  }
   if (averaging_) {
     averaged_tiles_.resize(tiles_.size());
     averaged_.resize(velocity_.size());
@@ -248,11 +256,28 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::update_grid(double dt, const std::
   constexpr int B = Block<Dim>::cells;
   bool shaken = false;
   for (const double a : inertial) shaken = shaken || a != 0.0;
+  // Nodes at mirrors need their images' sums, so those are complete before any velocity is made.
+  const bool mirrored = mirrors_.any();
+  if (mirrored) {
+#pragma omp parallel for schedule(static)
+    for (std::size_t a = 0; a < grid_.active(); ++a) {
+      gather_tiles<Dim, Shape>(grid_, a, tiles_.data(), sums_.data() + a * block_nodes);
+      if constexpr (Split) gather_tiles<Dim, Shape>(grid_, a, forces_.data(), force_sums_.data() + a * block_nodes);
+    }
+    mirrors_.fold(sums_.data());
+    if constexpr (Split) mirrors_.fold(force_sums_.data());
+  }
 #pragma omp parallel for schedule(static)
   for (std::size_t a = 0; a < grid_.active(); ++a) {
-    Vec4 sum[block_nodes], force[Split ? block_nodes : 1];
-    gather_tiles<Dim, Shape>(grid_, a, tiles_.data(), sum);
-    if constexpr (Split) gather_tiles<Dim, Shape>(grid_, a, forces_.data(), force);
+    Vec4 own_sum[block_nodes], own_force[Split ? block_nodes : 1];
+    const Vec4 *sum = own_sum, *force = own_force;
+    if (mirrored) {
+      sum = sums_.data() + a * block_nodes;
+      force = Split ? force_sums_.data() + a * block_nodes : nullptr;
+    } else {
+      gather_tiles<Dim, Shape>(grid_, a, tiles_.data(), own_sum);
+      if constexpr (Split) gather_tiles<Dim, Shape>(grid_, a, forces_.data(), own_force);
+    }
     GridSums<Dim> sums;
     const NodeContact* contact = ground_.of_block(a);
     Gap gap[block_nodes];
@@ -300,6 +325,10 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::update_grid(double dt, const std::
     grid_sums_[a] = sums;
   }
   if (ground_.any()) rub_ground();
+  if (mirrored) {
+    mirrors_.reflect(velocity_.data());
+    if constexpr (Split) mirrors_.reflect(change_.data());
+  }
   for (const auto& s : grid_sums_) {
     work_.friction += s.friction;
     work_.damping += s.damping;

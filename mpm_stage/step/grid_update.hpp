@@ -44,7 +44,7 @@ inline double apply_local_damping(double alpha, double dt, const std::array<doub
   return lost;
 }
 
-// Node planes at and beyond a wall: fixed holds them, slip holds the normal component, frictional is contact.
+// Node planes at and beyond a frictional wall; fixed and slip walls are mirrors (mirror_walls.hpp).
 template <int Dim>
 inline void apply_walls(const WallNodes<Dim>& walls, const std::array<int, Dim>& node, double mass,
                         std::array<double, Dim>& v, GridSums<Dim>& sums) {
@@ -52,11 +52,7 @@ inline void apply_walls(const WallNodes<Dim>& walls, const std::array<int, Dim>&
     for (int s = 0; s < 2; ++s) {
       const auto& side = walls.side[d][s];
       if (side.kind == WallKind::open || (s == 0 ? node[d] > side.node : node[d] < side.node)) continue;
-      if (side.kind == WallKind::fixed) {
-        v.fill(0.0);
-      } else if (side.kind == WallKind::slip) {
-        v[d] = 0.0;
-      } else {
+      if (side.kind == WallKind::frictional) {
         std::array<double, Dim> n{};
         n[d] = s == 0 ? 1.0 : -1.0;
         sums.friction += mass * apply_wall_contact<Dim>(v, n, side.friction);

@@ -1,0 +1,79 @@
+#include "mpm_stage/boundary/mirror_walls.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tailrun::mpm {
+
+namespace {
+
+// Number of the node at `index` (counted from the origin) near active block a; -1 when its block is not active.
+template <int Dim>
+std::ptrdiff_t node_number(const BlockGrid<Dim>& grid, std::size_t a, const std::array<int, Dim>& index) {
+  constexpr int B = Block<Dim>::cells;
+  int at = 0, side = 0;
+  for (int d = 0, stride = 1, three = 1; d < Dim; ++d, stride *= B, three *= 3) {
+    const int block = static_cast<int>(std::floor(static_cast<double>(index[d]) / B));
+    const int step = block - grid.active_index(a)[d];
+    if (step < -1 || step > 1) return -1;
+    side += (step + 1) * three;
+    at += (index[d] - block * B) * stride;
+  }
+  const int other = grid.active_beside(a, side);
+  return other < 0 ? -1 : static_cast<std::ptrdiff_t>(other) * Block<Dim>::nodes + at;
+}
+
+}  // namespace
+
+template <int Dim>
+void MirrorWalls<Dim>::update(const BlockGrid<Dim>& grid, const WallNodes<Dim>& walls, int reach) {
+  constexpr int B = Block<Dim>::cells;
+  pairs_.clear();
+  for (int d = 0; d < Dim; ++d)
+    for (int s = 0; s < 2; ++s) {
+      const auto& wall = walls.side[d][s];
+      if (wall.kind != WallKind::fixed && wall.kind != WallKind::slip) continue;
+      for (std::size_t a = 0; a < grid.active(); ++a) {
+        const int first = grid.active_index(a)[d] * B;
+        if (first > wall.node + reach || first + B <= wall.node - reach) continue;
+        for (int n = 0; n < Block<Dim>::nodes; ++n) {
+          std::array<int, Dim> index;
+          for (int e = 0, k = n; e < Dim; ++e, k /= B) index[e] = grid.active_index(a)[e] * B + k % B;
+          const int depth = s == 0 ? index[d] - wall.node : wall.node - index[d];
+          if (depth < 0 || depth > reach) continue;
+          index[d] = 2 * wall.node - index[d];
+          pairs_.push_back({a * Block<Dim>::nodes + static_cast<std::size_t>(n), node_number<Dim>(grid, a, index), d,
+                            wall.kind == WallKind::fixed});
+        }
+      }
+    }
+}
+
+template <int Dim>
+void MirrorWalls<Dim>::fold(Vec4* sums) const {
+  for (const Pair& p : pairs_) {
+    if (p.behind < 0 || static_cast<std::size_t>(p.behind) == p.inside) continue;
+    Vec4 image = sums[p.behind];
+    for (int d = 0; d < Dim; ++d)
+      if (p.fixed || d == p.direction) image[1 + d] = -image[1 + d];
+    sums[p.inside] += image;
+  }
+}
+
+template <int Dim>
+void MirrorWalls<Dim>::reflect(Vec4* velocity) const {
+  for (const Pair& p : pairs_) {
+    Vec4 image = velocity[p.inside];
+    for (int lane = 0; lane < 4; ++lane)
+      if (p.fixed || lane % (Dim == 2 ? 2 : 4) == p.direction) image[lane] = -image[lane];
+    if (static_cast<std::size_t>(p.behind) == p.inside)
+      velocity[p.inside] = 0.5 * (velocity[p.inside] + image);
+    else if (p.behind >= 0)
+      velocity[p.behind] = image;
+  }
+}
+
+template class MirrorWalls<2>;
+template class MirrorWalls<3>;
+
+}  // namespace tailrun::mpm
