@@ -47,6 +47,7 @@ SymmetricSystem::SymmetricSystem(int equations, std::vector<int> element_equatio
         if (j < 0 || i < j) continue;
         slot_[k * (k * e + a) + b] = static_cast<int>(std::lower_bound(row + start[j], row + start[j + 1], i) - row);
       }
+  clear();
   factor_ = cholmod_analyze(matrix_, &common_);
 }
 

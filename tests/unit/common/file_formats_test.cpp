@@ -1,0 +1,102 @@
+// The two file formats: what is written is read back, and what is damaged is refused.
+#include <doctest/doctest.h>
+
+#include <fstream>
+#include <limits>
+
+#include "common/error.hpp"
+#include "common/particles.hpp"
+#include "common/snapshot.hpp"
+
+using namespace tailrun;
+
+namespace {
+
+const auto folder = std::filesystem::temp_directory_path();
+
+Snapshot small_snapshot() {
+  Snapshot s;
+  s.time = 16.0;
+  s.base_velocity = {0.1, 0.0};
+  s.region_names = {"tailings"};
+  s.position = {0, 0, 1, 0, 1, 1, 0, 1};
+  s.displacement = s.velocity = s.acceleration = {1, 2, 3, 4, 5, 6, 7, 8};
+  s.pore_pressure = s.excess_pore_pressure = {1e3, 2e3, 3e3, 4e3};
+  s.quads = {0, 1, 2, 3};
+  s.region_id = {0};
+  s.effective_stress = s.total_stress = s.initial_effective_stress = {-1e4, -2e4, -1e4, 5e3};
+  s.thickness = s.density = s.porosity = s.initial_vertical_effective_stress = s.initial_pore_pressure =
+      s.depth = {2.0};
+  s.excess_pore_pressure_ratio = s.max_excess_pore_pressure_ratio = s.effective_stress_ratio = s.shear_strain =
+      s.scaled_jacobian = {0.5};
+  s.lines = {{"base", {0, 1}}};
+  s.phreatic_line = {-1, 0.5, 2, 0.5};
+  return s;
+}
+
+ParticleSet small_particles() {
+  ParticleSet p;
+  p.material_names = {"liquefied"};
+  p.region_names = {"tailings"};
+  p.position = {0, 1, 0, 2, 3, 0};
+  p.velocity = {0, 0, 0, 1, 1, 0};
+  p.mass = {1.0, 2.0};
+  p.volume = {0.1, 0.2};
+  p.effective_stress = {-1, -2, -3, 4, -5, -6, -7, 8};
+  p.pore_pressure = {10, 20};
+  p.material_id = {0, 0};
+  p.residual_strength = {3200, 9100};
+  p.extra["percentile"] = {0.5, 0.5};
+  p.notes["audit"] = "{\"mass\": 3}";
+  p.terrain = {{"bed", {0, 0, 10, 0}}};
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("a snapshot comes back as it was") {
+  const auto path = folder / "tailrun_snapshot.h5";
+  const Snapshot s = small_snapshot();
+  write_snapshot(path, s, {});
+  const Snapshot r = read_snapshot(path);
+  CHECK(r.time == 16.0);
+  CHECK(r.displacement == s.displacement);
+  CHECK(r.effective_stress == s.effective_stress);
+  CHECK(r.phreatic_line == s.phreatic_line);
+  CHECK(r.lines.at(0).edges == s.lines[0].edges);
+  CHECK_FALSE(std::filesystem::exists(path.string() + ".part"));
+}
+
+TEST_CASE("particles come back as they were, with further fields and notes") {
+  const auto path = folder / "tailrun_particles.h5";
+  const ParticleSet p = small_particles();
+  write_particles(path, p, {});
+  const ParticleSet r = read_particles(path);
+  CHECK(r.effective_stress == p.effective_stress);
+  CHECK(r.residual_strength == p.residual_strength);
+  CHECK(r.extra.at("percentile") == p.extra.at("percentile"));
+  CHECK(r.notes.at("audit") == p.notes.at("audit"));
+  CHECK(r.terrain.at(0).points == p.terrain[0].points);
+  CHECK(r.depth.empty());
+}
+
+TEST_CASE("the wrong file, a cut file and values that are not finite are refused") {
+  const auto snapshot = folder / "tailrun_snapshot2.h5", particles = folder / "tailrun_particles2.h5";
+  write_snapshot(snapshot, small_snapshot(), {});
+  CHECK_THROWS_AS(read_particles(snapshot), InputError);
+  CHECK_THROWS_AS(read_snapshot(folder / "tailrun_missing.h5"), InputError);
+  ParticleSet p = small_particles();
+  p.mass[1] = -1.0;
+  write_particles(particles, p, {});
+  CHECK_THROWS_AS(read_particles(particles), InputError);
+  p.mass[1] = 1.0;
+  p.pore_pressure[0] = std::numeric_limits<double>::quiet_NaN();
+  write_particles(particles, p, {});
+  CHECK_THROWS_AS(read_particles(particles), InputError);
+  std::filesystem::resize_file(snapshot, std::filesystem::file_size(snapshot) / 2);
+  CHECK_THROWS_AS(read_snapshot(snapshot), InputError);
+}
+
+TEST_CASE("SHA-256 of a known text") {
+  CHECK(sha256_of_text("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
