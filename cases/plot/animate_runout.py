@@ -31,7 +31,7 @@ def main():
     figure, axis = plt.subplots(figsize=(style.WIDTH, style.panel_height(view) + 0.9))
     figure.subplots_adjust(left=0.07, right=0.99, top=0.93, bottom=0.36)
     dots = runout.draw_materials(figure, axis, first, view)
-    axis.legend(handles=runout.legend_handles(first), loc="upper center", bbox_to_anchor=(0.5, -0.32), ncol=4)
+    axis.legend(handles=runout.legend_handles(first), loc="upper center", bbox_to_anchor=(0.5, 0.0), borderaxespad=3.8, ncol=4)
 
     output = arguments.output
     if shutil.which("ffmpeg"):
@@ -45,11 +45,12 @@ def main():
         print(f"ffmpeg is missing: writing {output}")
     temporary = output.with_name(".part_" + output.name)
     output.parent.mkdir(parents=True, exist_ok=True)
+    square_metre = style.marker_area(figure, axis, 1.0)
     with writer.saving(figure, str(temporary), dpi=100):
         for path in paths:
             particles = chain.Particles(path)
             dots.set_offsets(particles.position)
-            dots.set_sizes(fields.marker_areas(figure, axis, particles))
+            dots.set_sizes(fields.marker_areas(particles, square_metre))
             if len(particles.position) != len(dots.get_facecolors()):
                 dots.set_facecolors(runout.colours_of(particles))
             axis.set_title(f"t = {particles.time:.1f} s")

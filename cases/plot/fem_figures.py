@@ -26,7 +26,7 @@ def plot_mesh(plt, snapshot, options, output):
         style.true_aspect(axis, view)
     axes[0].set_title(f"mesh: {len(snapshot.position)} nodes, {len(snapshot.quads)} quadrilaterals")
     handles += axes[0].get_legend_handles_labels()[0]
-    axes[1].legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.22), ncol=6)
+    axes[1].legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0.0), borderaxespad=3.8, ncol=6)
     style.save(figure, output)
 
 

@@ -81,17 +81,18 @@ def draw_particles(figure, axis, particles, values, **options):
         particles.position[:, 0],
         particles.position[:, 1],
         c=values,
-        s=marker_areas(figure, axis, particles),
+        s=marker_areas(particles, style.marker_area(figure, axis, 1.0)),
         marker="s",
         linewidths=0,
         **options,
     )
 
 
-def marker_areas(figure, axis, particles):
-    """A little more than each particle's own area, so that no grid of gaps shows between them."""
+def marker_areas(particles, square_metre):
+    """Marker areas (points^2), a little more than each particle's own so that no grid of gaps shows between them;
+    `square_metre` is style.marker_area of 1 m."""
     volume = np.minimum(particles.data["volume"], 4.0 * particles.size**2)  # a particle that has blown up hides nothing
-    return 1.4 * style.marker_area(figure, axis, 1.0) * volume
+    return 1.7 * square_metre * volume
 
 
 def draw_terrain(axis, particles, floor):

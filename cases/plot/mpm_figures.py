@@ -19,7 +19,7 @@ def plot_handover(plt, first, view, output):
     figure, axis = plt.subplots(figsize=(style.WIDTH, style.panel_height(view) + 0.6))
     runout.draw_materials(figure, axis, first, view)
     axis.set_title(f"particles at the hand-over, t = {first.time:g} s: {len(first.position)}, {first.size:.2f} m apart")
-    axis.legend(handles=runout.legend_handles(first), loc="upper center", bbox_to_anchor=(0.5, -0.25), ncol=4)
+    axis.legend(handles=runout.legend_handles(first), loc="upper center", bbox_to_anchor=(0.5, 0.0), borderaxespad=3.8, ncol=4)
     style.save(figure, output)
 
 
@@ -52,7 +52,7 @@ def plot_stages(plt, paths, view, output):
         axis.set_xlabel("")
         axis.text(0.99, 0.94, f"t = {particles.time:g} s", transform=axis.transAxes, ha="right", va="top")
     axes[-1, 0].set_xlabel("x (m)")
-    axes[-1, 0].legend(handles=runout.legend_handles(particles), loc="upper center", bbox_to_anchor=(0.5, -0.3), ncol=4)
+    axes[-1, 0].legend(handles=runout.legend_handles(particles), loc="upper center", bbox_to_anchor=(0.5, 0.0), borderaxespad=3.8, ncol=4)
     style.save(figure, output)
 
 

@@ -22,5 +22,5 @@ def plot_overview(plt, snapshot, first, last, options, output):
         axis.set_title(title, loc="left")
     for axis in axes[:2]:
         axis.set_xlabel("")
-    axes[2].legend(handles=runout.legend_handles(first), loc="upper center", bbox_to_anchor=(0.5, -0.25), ncol=4)
+    axes[2].legend(handles=runout.legend_handles(first), loc="upper center", bbox_to_anchor=(0.5, 0.0), borderaxespad=3.8, ncol=4)
     style.save(figure, output)

@@ -51,5 +51,5 @@ def collect(results, phase):
             ("MPM", "wall time", show(mpm.get("wall_seconds", {}).get("total"), 1), "s"),
         ]
         if crest[0] is not None:
-            rows.insert(-2, ("MPM", "crest sinks by", show(crest[0] - crest[1]), "m"))
+            rows.insert(-2, ("MPM", "crest sinks by", show(crest[0] - crest[1] + 0.0), "m"))
     return rows
