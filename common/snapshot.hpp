@@ -61,8 +61,8 @@ struct Snapshot {
   std::size_t elements() const { return region_id.size(); }
 };
 
-// Throws ComputationError when it cannot be written, std::logic_error when array lengths disagree. `also` may add groups
-// of the writing program's own (its restart state) before the file takes its final name.
+// Throws ComputationError when it cannot be written, std::logic_error when array lengths disagree. `also` may add
+// groups of the writing program's own (its restart state) before the file takes its final name.
 void write_snapshot(const std::filesystem::path& path, const Snapshot& snapshot, const Provenance& provenance,
                     const std::function<void(Hdf5Writer&)>& also = {});
 

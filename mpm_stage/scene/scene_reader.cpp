@@ -83,7 +83,6 @@ void read_output(const CaseNode& root, Scene& scene) {
   OutputOptions& o = scene.output;
   o.frame_interval = node.number_or("frame_interval", "s", Range::non_negative(), o.frame_interval);
   o.series_interval = node.number_or("series_interval", "s", Range::positive(), o.series_interval);
-  o.checkpoint_interval = node.number_or("checkpoint_interval", "s", Range::non_negative(), o.checkpoint_interval);
   const std::string direction = node.choice_or("front_direction", {"+x", "-x", "+y", "-y", "+z", "-z"}, "+x");
   o.front_sign = direction[0] == '+' ? 1.0 : -1.0;
   o.front_axis = direction[1] - 'x';
