@@ -65,9 +65,9 @@ def plot_front(plt, front, paths, start, output):
     axes[0].set(ylabel="front, x (m)", title="runout")
     axes[0].legend(loc="best")
     axes[1].plot(t, front["top_m"], "C0", label="highest point of the moving mass")
-    for name in front:
-        if name.endswith("_y_m") and name != "centre_y_m":
-            axes[1].plot(t, front[name], lw=1.0, label=name[: -len("_y_m")].replace("_", " "))
+    followed = [name for name in front if name.endswith("_y_m") and name != "centre_y_m"]
+    for index, name in enumerate(followed):
+        axes[1].plot(t, front[name], f"C{index + 1}", lw=1.0, label=name[: -len("_y_m")].replace("_", " "))
     axes[1].set_ylabel("y (m)")
     axes[1].legend(loc="best")
     axes[2].semilogy(t, np.maximum(front["rms_speed_m_s"], 1e-6), "C0", label="root mean square")

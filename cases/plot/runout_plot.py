@@ -12,6 +12,8 @@ def runout_view(first, last, options):
     moved = np.hypot(*(last.data["displacement"] - displacement_at_transfer(first, last))[:, :2].T)
     shown = moved > max(0.02 * moved.max(), 1e-9)
     reach = last.position[shown] if shown.any() else last.position
+    if shown.any() and len(first.position) == len(shown):
+        reach = np.concatenate([reach, first.position[shown]])
     low, high = last.position.min(axis=0), last.position.max(axis=0)
     high = np.maximum(high, first.position.max(axis=0))
     if "runout_view" in options:
