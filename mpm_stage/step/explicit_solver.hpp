@@ -164,8 +164,7 @@ class ExplicitSolver final : public Solver<Dim> {
   std::array<double, Dim> body_{};
   bool averaging_ = false, leaving_ = false;
   double mass_cutoff_ = 0.0, next_dt_ = 0.0, drift_ = 0.0, fastest_wave_ = 0.0, viscous_limit_ = 1e30;
-  std::vector<double> wave_speed_;               // m/s, by material
-  std::vector<double> largest_specific_volume_;  // m3/kg, by material
+  std::vector<double> wave_speed_;  // m/s, by material
 
   AlignedVector<Vec4> tiles_, forces_;     // per occupied block
   AlignedVector<Vec4> velocity_, change_;  // per active block

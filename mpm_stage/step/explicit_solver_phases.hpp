@@ -49,19 +49,6 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::sort() {
   motion_.resize(grid_.occupied());
   dissipated_.resize(grid_.occupied());
 
-  // Soil that comes apart carries no stress but would go on counting the opening voids as its own volume, and its wave
-  // speed would take the time step to nothing. The grains' volume is what counts: at most twice that of the loosest
-  // particle at the start.
-  if (largest_specific_volume_.empty()) {
-    largest_specific_volume_.assign(constants_.size(), 0.0);
-    for (std::size_t p = 0; p < P_.count(); ++p) {
-      double& largest = largest_specific_volume_[P_.material[p]];
-      largest = std::max(largest, 2.0 * P_.volume[p] / P_.mass[p]);
-    }
-  }
-  for (std::size_t p = 0; p < P_.count(); ++p)
-    P_.volume[p] = std::min(P_.volume[p], largest_specific_volume_[P_.material[p]] * P_.mass[p]);
-
   // Wave speeds follow the lowest density of each material.
   std::vector<double> density(constants_.size(), 1e300);
   for (std::size_t p = 0; p < P_.count(); ++p)
