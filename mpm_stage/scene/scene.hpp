@@ -33,9 +33,9 @@ struct OutputOptions {
   double frame_interval = 1.0;    // s of simulated time; 0: no frames
   double series_interval = 0.05;  // s
   bool compress = true;
-  int front_axis = 0;                  // coordinate along which the front runs
-  double front_sign = 1.0;             // +1: towards larger coordinates
-  double front_quantile = 0.999;       // 1, share of the moving mass behind the robust front
+  int front_axis = 0;             // coordinate along which the front runs
+  double front_sign = 1.0;        // +1: towards larger coordinates
+  double front_quantile = 0.999;  // 1, share of the moving mass behind the robust front
   std::vector<TrackedPoint> points;
   std::vector<std::string> fields;  // extra fields of the frames
 };
