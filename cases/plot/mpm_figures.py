@@ -88,6 +88,7 @@ def plot_energy(plt, ledger, start, output):
         "friction_J": "dissipated on the bed",
         "damping_J": "damping",
         "external_J": "external work",
+        "pore_pressure_J": "work of frozen pore pressure",
     }
     figure, axis = plt.subplots(figsize=(9, 4.6))
     t = start + ledger["time_s"]

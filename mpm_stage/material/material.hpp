@@ -68,6 +68,9 @@ struct MaterialConstants {
   bool allow_tension = false, averaged = true;
   PorePressure pore_pressure = PorePressure::total;
   double pore_stiffness = 0.0;
+  // m3/kg, of Mohr-Coulomb and Tresca soil. Soil that comes apart carries no stress but would go on counting the
+  // opening voids as its own volume; its density would go to nothing and its wave speed would take the time step along.
+  double largest_specific_volume = 1e300;
 
   // Pa, of a longitudinal wave: K + 4 G / 3 and the stiffness of the pore fluid where it counts.
   double wave_modulus() const {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
+#include "mpm_stage/material/frozen_pore_pressure.hpp"
 #include "mpm_stage/material/return_mapping.hpp"
 #include "mpm_stage/material/strength.hpp"
 #include "mpm_stage/material/stress_update.hpp"
@@ -133,7 +134,7 @@ double elasto_plastic(const MaterialConstants& k, const Columns& c, std::size_t 
     c.szz[i] = z1;
     c.sxy[i] = t.r * scale;
     c.strain[i] += w.strain;
-    c.volume[i] *= volume_ratio(c.trace[i]);
+    c.volume[i] = std::min(c.volume[i] * volume_ratio(c.trace[i]), k.largest_specific_volume * c.mass[i]);
     return w.work * c.volume[i];
   };
   if constexpr (Cutoff) {
@@ -174,14 +175,7 @@ double newtonian_fluid(const MaterialConstants& k, const Columns& c, std::size_t
   return dissipated;
 }
 
-}  // namespace
-
-double update_stress(const MaterialConstants& k, Particles<2>& P, std::size_t begin, std::size_t end,
-                     const double* trace, const double* shift, double dt) {
-  const std::size_t n = end - begin;
-  const Columns c(P, trace, shift, begin);
-  if (k.pore_pressure == PorePressure::undrained)
-    for (std::size_t i = 0; i < n; ++i) P.pore_pressure[begin + i] -= k.pore_stiffness * trace[i];
+double update_skeleton(const MaterialConstants& k, const Columns& c, std::size_t n, double dt) {
   const bool cutoff = k.tension >= 0.0;
   switch (k.model) {
     case Model::linear_elastic:
@@ -199,6 +193,17 @@ double update_stress(const MaterialConstants& k, Particles<2>& P, std::size_t be
   throw ComputationError("a rigid material has no stress update");
 }
 
+}  // namespace
+
+StressWork update_stress(const MaterialConstants& k, Particles<2>& P, std::size_t begin, std::size_t end,
+                         const double* trace, const double* shift, double dt) {
+  if (k.pore_pressure == PorePressure::undrained)
+    for (std::size_t p = begin; p < end; ++p) P.pore_pressure[p] -= k.pore_stiffness * trace[p - begin];
+  FrozenPorePressure<2> water(k, P, begin, end, trace, shift);
+  const double dissipated = update_skeleton(k, Columns(P, trace, shift, begin), end - begin, dt);
+  return {dissipated, water.release()};
+}
+
 double elastic_energy(const MaterialConstants& k, const Particles<2>& P, std::size_t begin, std::size_t end) {
   double energy = 0.0;
   for (std::size_t p = begin; p < end; ++p) {
@@ -213,8 +218,6 @@ double elastic_energy(const MaterialConstants& k, const Particles<2>& P, std::si
     }
     if (k.pore_pressure == PorePressure::undrained)
       energy += 0.5 * P.pore_pressure[p] * P.pore_pressure[p] / k.pore_stiffness * P.volume[p];
-    else if (k.pore_pressure == PorePressure::frozen)
-      energy -= P.pore_pressure[p] * P.volume[p];
   }
   return energy;
 }

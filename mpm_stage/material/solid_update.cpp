@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
+#include "mpm_stage/material/frozen_pore_pressure.hpp"
 #include "mpm_stage/material/return_mapping.hpp"
 #include "mpm_stage/material/strength.hpp"
 #include "mpm_stage/material/stress_update.hpp"
@@ -76,9 +77,10 @@ double return_to_yield(const MaterialConstants& k, double strength, double rate,
 
 }  // namespace
 
-double update_stress(const MaterialConstants& k, Particles<3>& P, std::size_t begin, std::size_t end,
-                     const double* trace, const double* shift, double dt) {
+StressWork update_stress(const MaterialConstants& k, Particles<3>& P, std::size_t begin, std::size_t end,
+                         const double* trace, const double* shift, double dt) {
   double dissipated = 0.0;
+  FrozenPorePressure<3> water(k, P, begin, end, trace, shift);
   for (std::size_t p = begin; p < end; ++p) {
     const double t = trace[p - begin];
     const Matrix G = gradient_matrix(P, p), D = 0.5 * (G + G.transpose());
@@ -95,12 +97,14 @@ double update_stress(const MaterialConstants& k, Particles<3>& P, std::size_t be
     }
     if (k.model == Model::rigid) throw ComputationError("a rigid material has no stress update");
     Matrix s = rotated(stress_matrix(P, p), G) + 2.0 * k.mu * e + (k.bulk * t + shift[p - begin]) * Matrix::Identity();
-    if (k.model != Model::linear_elastic)
+    if (k.model != Model::linear_elastic) {
+      P.volume[p] = std::min(P.volume[p], k.largest_specific_volume * P.mass[p]);
       dissipated += P.volume[p] * return_to_yield(k, P.strength[p], dt > 0.0 ? std::sqrt(2.0) * e.norm() / dt : 0.0, s,
                                                   P.plastic_strain[p]);
+    }
     store(P, p, s);
   }
-  return dissipated;
+  return {dissipated, water.release()};
 }
 
 double elastic_energy(const MaterialConstants& k, const Particles<3>& P, std::size_t begin, std::size_t end) {
@@ -112,8 +116,6 @@ double elastic_energy(const MaterialConstants& k, const Particles<3>& P, std::si
     if (k.model != Model::newtonian_fluid) density += 0.25 * (s - mean * Matrix::Identity()).squaredNorm() / k.mu;
     if (k.pore_pressure == PorePressure::undrained)
       density += 0.5 * P.pore_pressure[p] * P.pore_pressure[p] / k.pore_stiffness;
-    else if (k.pore_pressure == PorePressure::frozen)
-      density -= P.pore_pressure[p];
     energy += density * P.volume[p];
   }
   return energy;

@@ -9,17 +9,22 @@
 
 namespace tailrun::mpm {
 
+// J (per metre in plane strain).
+struct StressWork {
+  double dissipated = 0.0;     // in plastic and viscous flow
+  double pore_pressure = 0.0;  // done by frozen pore pressure on the soil's expansion
+};
+
 // Particles begin .. end of `P`, whose `gradient` holds the step's midpoint gradient. `trace` has one volumetric strain
 // increment per particle of the run, which takes the place of the particle's own, `shift` what to add to the mean
 // stress, Pa (volumetric_average.hpp). `dt` s. Returns the energy dissipated in plastic and viscous flow, J.
-double update_stress(const MaterialConstants& material, Particles<2>& P, std::size_t begin, std::size_t end,
-                     const double* trace, const double* shift, double dt);
-double update_stress(const MaterialConstants& material, Particles<3>& P, std::size_t begin, std::size_t end,
-                     const double* trace, const double* shift, double dt);
+StressWork update_stress(const MaterialConstants& material, Particles<2>& P, std::size_t begin, std::size_t end,
+                         const double* trace, const double* shift, double dt);
+StressWork update_stress(const MaterialConstants& material, Particles<3>& P, std::size_t begin, std::size_t end,
+                         const double* trace, const double* shift, double dt);
 
 // Recoverable energy of the stresses, J: s : C^-1 : s / 2 (elastic and elasto-plastic solids), K (ln J)^2 / 2 of the
-// fluid, u^2 / (2 K_f / n) of undrained pore water, and -u V of frozen pore water, which pushes with the same pressure
-// however far its particle expands.
+// fluid, and u^2 / (2 K_f / n) of undrained pore water.
 double elastic_energy(const MaterialConstants& material, const Particles<2>& P, std::size_t begin, std::size_t end);
 double elastic_energy(const MaterialConstants& material, const Particles<3>& P, std::size_t begin, std::size_t end);
 

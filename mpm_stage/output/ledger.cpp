@@ -23,7 +23,7 @@ double Ledger<Dim>::turnover() const {
   const LedgerRow &first = rows_.front(), &last = rows_.back();
   return std::max({std::fabs(first.gravitational - last.gravitational), first.kinetic + first.elastic, largest_kinetic_,
                    losses(last.work)}) +
-         std::fabs(last.work.external);
+         std::fabs(last.work.external) + std::fabs(last.work.pore_pressure);
 }
 
 template <int Dim>
@@ -49,7 +49,7 @@ const LedgerRow& Ledger<Dim>::sample(double time, Solver<Dim>& solver, double li
   if (!rows_.empty()) {
     const LedgerRow& first = rows_.front();
     // A particle that left took its height's energy along, so mass that went is no longer comparable.
-    row.residual = first.total() + row.work.external - losses(row.work) - row.total();
+    row.residual = first.total() + row.work.external + row.work.pore_pressure - losses(row.work) - row.total();
     if (row.mass < first.mass * (1.0 - 1e-12)) row.residual = std::nan("");
   }
   rows_.push_back(row);
@@ -65,14 +65,15 @@ const LedgerRow& Ledger<Dim>::sample(double time, Solver<Dim>& solver, double li
 template <int Dim>
 void Ledger<Dim>::write(const std::filesystem::path& path) const {
   std::string text =
-      "time_s,kinetic_J,elastic_J,gravitational_J,plastic_J,friction_J,damping_J,external_J,residual_J,"
+      "time_s,kinetic_J,elastic_J,gravitational_J,plastic_J,friction_J,damping_J,external_J,pore_pressure_J,residual_J,"
       "mass_kg,momentum_x_Ns,momentum_y_Ns,momentum_z_Ns,angular_momentum_Nms\n";
   for (const auto& r : rows_)
     text += fmt::format(
-        "{:.9g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.15g},{:.15g},{:.15g},{:.15g},{:.15g}"
+        "{:.9g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.15g},{:.15g},{:.15g},{:.15g}"
+        ",{:.15g}"
         "\n",
         r.time, r.kinetic, r.elastic, r.gravitational, r.work.plastic, r.work.friction, r.work.damping, r.work.external,
-        r.residual, r.mass, r.momentum[0], r.momentum[1], r.momentum[2], r.angular_momentum);
+        r.work.pore_pressure, r.residual, r.mass, r.momentum[0], r.momentum[1], r.momentum[2], r.angular_momentum);
   write_text_file(path.string(), text);
 }
 

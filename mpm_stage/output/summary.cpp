@@ -104,6 +104,7 @@ Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& reco
                  {"friction_J", last.work.friction},
                  {"damping_J", last.work.damping},
                  {"external_J", last.work.external},
+                 {"pore_pressure_J", last.work.pore_pressure},
                  {"removed_J", last.work.removed},
                  {"residual_J", last.residual},
                  {"turnover_J", ledger.turnover()},

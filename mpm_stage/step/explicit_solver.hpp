@@ -54,6 +54,7 @@ class ExplicitSolver final : public Solver<Dim> {
       constants_.back().averaged = constants_.back().averaged && options.volumetric_average;
       averaging_ = averaging_ || constants_.back().averaged;
     }
+    limit_volumes();
     for (int d = 0; d < Dim; ++d)
       for (int s = 0; s < 2; ++s) {
         auto& side = wall_nodes_.side[d][s];
@@ -141,6 +142,7 @@ class ExplicitSolver final : public Solver<Dim> {
     return s;
   }
 
+  void limit_volumes();
   void sort();
   void update_grid(double dt, const std::array<double, Dim>& body, const std::array<double, Dim>& inertial);
   void gather(double dt, StepReport& report);
@@ -180,7 +182,7 @@ class ExplicitSolver final : public Solver<Dim> {
     bool outside = false;
   };
   std::vector<BlockMotion> motion_;
-  std::vector<double> dissipated_;
+  std::vector<StressWork> stress_work_;  // per occupied block
 
   WorkDone work_;
   PhaseSeconds seconds_;

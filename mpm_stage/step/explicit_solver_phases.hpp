@@ -5,6 +5,16 @@
 
 namespace tailrun::mpm {
 
+// The grains' volume is what counts: at most twice that of the material's loosest particle at the start.
+template <int Dim, class Shape, bool Split, bool Flip>
+void ExplicitSolver<Dim, Shape, Split, Flip>::limit_volumes() {
+  std::vector<double> loosest(constants_.size(), 0.0);
+  for (std::size_t p = 0; p < P_.count(); ++p)
+    loosest[P_.material[p]] = std::max(loosest[P_.material[p]], P_.volume[p] / P_.mass[p]);
+  for (std::size_t m = 0; m < constants_.size(); ++m)
+    if (loosest[m] > 0.0) constants_[m].largest_specific_volume = 2.0 * loosest[m];
+}
+
 template <int Dim, class Shape, bool Split, bool Flip>
 void ExplicitSolver<Dim, Shape, Split, Flip>::sort() {
   const auto since = Clock::now();
@@ -47,7 +57,7 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::sort() {
   }
   grid_sums_.resize(grid_.active());
   motion_.resize(grid_.occupied());
-  dissipated_.resize(grid_.occupied());
+  stress_work_.resize(grid_.occupied());
 
   // Wave speeds follow the lowest density of each material.
   std::vector<double> density(constants_.size(), 1e300);
@@ -262,7 +272,7 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::update_stresses(double dt) {
     for (std::size_t b = 0; b < grid_.occupied(); ++b) {
       NodeMean mean[tile_nodes];
       if (averaging_) load_tile<Dim, Shape>(grid_, b, averaged_.data(), mean);
-      double work = 0.0;
+      StressWork work;
       for (const Run& run : grid_.runs(b)) {
         trace.resize(std::max(trace.size(), run.end - run.begin));
         shift.resize(trace.size(), 0.0);
@@ -278,18 +288,24 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::update_stresses(double dt) {
           }
         bool inverted = false;
         for (std::size_t i = 0; i < run.end - run.begin; ++i) inverted |= !(std::fabs(trace[i]) < 1.0);
-        work += inverted
-                    ? std::nan("")
-                    : update_stress(constants_[run.material], P_, run.begin, run.end, trace.data(), shift.data(), dt);
+        if (inverted) {
+          work.dissipated = std::nan("");
+          break;
+        }
+        const StressWork of_run =
+            update_stress(constants_[run.material], P_, run.begin, run.end, trace.data(), shift.data(), dt);
+        work.dissipated += of_run.dissipated;
+        work.pore_pressure += of_run.pore_pressure;
       }
-      dissipated_[b] = work;
+      stress_work_[b] = work;
     }
   }
   for (std::size_t b = 0; b < grid_.occupied(); ++b) {
-    if (!std::isfinite(dissipated_[b]))
+    if (!std::isfinite(stress_work_[b].dissipated))
       fail(grid_.first_particle(b), grid_.last_particle(b),
            "is inverted: its volume changes beyond all measure in one step");
-    work_.plastic += dissipated_[b];
+    work_.plastic += stress_work_[b].dissipated;
+    work_.pore_pressure += stress_work_[b].pore_pressure;
   }
   add_time(seconds_.stress, since);
 }

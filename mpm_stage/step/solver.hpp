@@ -32,9 +32,9 @@ struct SolverOptions {
 };
 
 // Work done since the start, J (per metre in plane strain), each counted as energy taken from the particles except
-// `external`, which was given to them.
+// `external` and `pore_pressure` (frozen pore water pushing expanding soil), which were given to them.
 struct WorkDone {
-  double plastic = 0.0, friction = 0.0, damping = 0.0, external = 0.0, removed = 0.0;
+  double plastic = 0.0, friction = 0.0, damping = 0.0, external = 0.0, removed = 0.0, pore_pressure = 0.0;
 };
 
 // Wall-clock seconds by phase since the start.

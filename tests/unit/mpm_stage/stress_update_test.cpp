@@ -102,3 +102,49 @@ TEST_CASE("softening: strength falls to its residual over the strain given") {
   const double tau = std::hypot(P.stress[3][0], 0.5 * (P.stress[0][0] - P.stress[1][0]));
   CHECK(tau == doctest::Approx(4e3).epsilon(1e-6));
 }
+
+TEST_CASE("soil that opens loses its frozen pore pressure, and its work is u dV") {
+  Material m;
+  m.model = Model::mohr_coulomb;
+  m.youngs_modulus = 5e7;
+  m.poisson_ratio = 0.3;
+  m.friction_angle = 34.0;
+  m.pore_pressure = PorePressure::frozen;
+  MaterialConstants k = constants_of(m, 1.0);
+  Particles<2> P = one_particle({-5e4, -5e4, -5e4, 0.0});
+  P.pore_pressure.assign(1, 8e4);
+  P.strength[0] = 0.0;
+  const auto expand = [&](double strain) {
+    const auto G = midpoint_gradient(std::array<double, 4>{strain, 0.0, 0.0, strain});
+    for (int i = 0; i < 4; ++i) P.gradient[i][0] = G[i];
+    const double trace = G[0] + G[3], shift = 0.0;
+    return update_stress(k, P, 0, 1, &trace, &shift, 1e-3);
+  };
+  // While the skeleton is in compression nothing happens to the water.
+  const double to_apex = 5e4 / (2.0 * k.bulk);
+  CHECK(expand(0.2 * to_apex).pore_pressure == doctest::Approx(8e4 * 2.0 * 0.2 * to_apex).epsilon(1e-3));
+  CHECK(P.pore_pressure[0] == doctest::Approx(8e4));
+  // Past it the total mean stress goes on elastically, at the water's cost, until nothing is left.
+  const double mean = (P.stress[0][0] + P.stress[1][0] + P.stress[2][0]) / 3.0;
+  const double step = (4e4 - mean) / (2.0 * k.bulk);
+  expand(step);
+  CHECK(P.pore_pressure[0] == doctest::Approx(4e4).epsilon(1e-3));
+  for (int i = 0; i < 3; ++i) CHECK(P.stress[i][0] == doctest::Approx(0.0).scale(1e4));
+  expand(step);
+  CHECK(P.pore_pressure[0] == 0.0);
+  CHECK(expand(0.1).pore_pressure == 0.0);
+}
+
+TEST_CASE("voids that open do not count as the soil's volume beyond its limit") {
+  Material m;
+  m.model = Model::mohr_coulomb;
+  m.youngs_modulus = 5e7;
+  m.poisson_ratio = 0.3;
+  m.friction_angle = 34.0;
+  MaterialConstants k = constants_of(m, 1.0);
+  Particles<2> P = one_particle({0, 0, 0, 0});
+  P.strength[0] = 0.0;
+  k.largest_specific_volume = 2.0 * P.volume[0] / P.mass[0];
+  for (int i = 0; i < 40; ++i) update(k, P, {0.05, 0.0, 0.0, 0.05}, 1e-3);
+  CHECK(P.volume[0] == doctest::Approx(2.0).epsilon(1e-12));
+}
