@@ -52,6 +52,9 @@ void make_mesh(const Arguments& arguments) {
   Mesh mesh;
   if (!options.mesh.geometry.empty()) {
     mesh = mesh_geometry(options.mesh.geometry, options.mesh.parameters, output);
+  } else if (options.mesh.rectangle) {
+    write_rectangle_mesh(*options.mesh.rectangle, output);
+    mesh = read_gmsh(output);
   } else {
     mesh = read_gmsh(options.mesh.file);
     const fs::path temporary = output.string() + ".part";
@@ -88,7 +91,7 @@ void make_shake(const Arguments& arguments, bool echo) {
   const Motion motion = case_motion(options);
   if (echo) echo_options(arguments.case_file, options.echo);
   options.provenance.add_file(mesh_path(arguments));
-  options.provenance.add_file(options.shake.motion);
+  if (!options.shake.motion.empty()) options.provenance.add_file(options.shake.motion);
   options.provenance.add_file(geostatic_path(arguments));
   const Model model = build_model(options, mesh_path(arguments));
   MaterialPoints points = make_material_points(model);

@@ -16,12 +16,34 @@ std::vector<std::string> keys_of(const auto& map) {
   return keys;
 }
 
+RectangleMesh read_rectangle(const CaseNode& node) {
+  RectangleMesh out;
+  const auto origin = node.numbers_or("origin", "m", Range::any(), {0.0, 0.0}, 2);
+  out.origin = {origin[0], origin[1]};
+  out.width = node.number("width", "m", Range::positive());
+  out.columns = static_cast<int>(node.integer("columns", 1, 100000));
+  if (node.has("layers")) {
+    if (node.has("height") || node.has("rows") || node.has("region"))
+      node.fail("layers", "give either 'layers' or 'height', 'rows' and 'region'");
+    for (const auto& layer : node.list("layers"))
+      out.layers.push_back({layer.text("region"), layer.number("height", "m", Range::positive()),
+                            static_cast<int>(layer.integer("rows", 1, 100000))});
+    if (out.layers.empty()) node.fail("layers", "an empty list; at least one layer is required");
+  } else {
+    out.layers.push_back({node.text("region"), node.number("height", "m", Range::positive()),
+                          static_cast<int>(node.integer("rows", 1, 100000))});
+  }
+  out.distortion = node.number_or("distort", "1", Range::between(0.0, 0.3), 0.0);
+  return out;
+}
+
 MeshOptions read_mesh(const CaseNode& node, const std::string& size) {
   MeshOptions mesh;
-  if (node.has("geometry") == node.has("file"))
-    node.fail("", "give either 'geometry' (a .geo file) or 'file' (a .msh file)");
+  if (node.has("geometry") + node.has("file") + node.has("rectangle") != 1)
+    node.fail("", "give one of 'geometry' (a .geo file), 'file' (a .msh file) and 'rectangle'");
   if (node.has("geometry")) mesh.geometry = node.file("geometry");
   if (node.has("file")) mesh.file = node.file("file");
+  if (node.has("rectangle")) mesh.rectangle = read_rectangle(node.object("rectangle"));
   mesh.snap_to_phreatic_line = node.number_or("snap_to_phreatic_line", "m", Range::non_negative(), 0.0);
   std::map<std::string, CaseNode> sizes;
   for (const auto& [name, parameters] : node.object_or_empty("sizes").members()) {
@@ -37,27 +59,13 @@ MeshOptions read_mesh(const CaseNode& node, const std::string& size) {
   return mesh;
 }
 
-BoundaryOptions read_boundaries(const CaseNode& node) {
-  BoundaryOptions out;
-  const CaseNode base = node.object("base");
-  out.base_line = base.text("line");
-  out.base = base.choice("type", {"lysmer_dashpot", "rigid"}) == "rigid" ? BaseKind::rigid : BaseKind::lysmer_dashpot;
-  if (out.base == BaseKind::lysmer_dashpot) {
-    out.rock_density = base.number("rock_density", "kg/m3", Range::positive());
-    out.rock_shear_velocity = base.number("rock_shear_velocity", "m/s", Range::positive());
-    out.base_tied = base.boolean_or("tied", false);
-  }
-  out.tied_column_regions = node.texts_or("tied_column_regions", {});
-  out.periodic_lines = node.texts_or("periodic_lines", {});
-  out.roller_lines = node.texts_or("roller_lines", {});
-  out.geostatic_roller_lines = node.texts_or("geostatic_roller_lines", {});
-  return out;
-}
-
 GeostaticOptions read_geostatic(const CaseNode& node) {
   GeostaticOptions out;
   out.K0 = node.number_or("K0", "1", Range::open(0.0, 1.0), out.K0);
-  out.isotropic_seepage = node.choice_or("seepage", {"isotropic", "by_region"}, "isotropic") == "isotropic";
+  const std::string seepage = node.choice_or("seepage", {"isotropic", "by_region", "hydrostatic"}, "isotropic");
+  out.seepage = seepage == "isotropic"   ? Seepage::isotropic
+                : seepage == "by_region" ? Seepage::by_region
+                                         : Seepage::hydrostatic;
   out.settle_time = node.number_or("settle_time", "s", Range::non_negative(), out.settle_time);
   out.settle_step = node.number_or("settle_step", "s", Range::positive(), out.settle_step);
   out.tolerance = node.number_or("tolerance", "1", Range::positive(), out.tolerance);
@@ -66,10 +74,12 @@ GeostaticOptions read_geostatic(const CaseNode& node) {
 
 ShakeOptions read_shake(const CaseNode& node) {
   ShakeOptions out;
-  out.motion = node.file("motion");
-  out.peak_acceleration = node.number_or("peak_acceleration", "m/s2", Range::non_negative(), 0.0);
+  if (node.has("motion")) {
+    out.motion = node.file("motion");
+    out.peak_acceleration = node.number_or("peak_acceleration", "m/s2", Range::non_negative(), 0.0);
+  }
   out.duration = node.number("duration", "s", Range::positive());
-  out.time_step = node.number_or("time_step", "s", Range::open(0.0, 1.0), out.time_step);
+  out.time_step = node.number_or("time_step", "s", Range::positive(), out.time_step);
   const CaseNode newmark = node.object_or_empty("newmark");
   out.gamma = newmark.number_or("gamma", "1", Range::between(0.5, 2.0), out.gamma);
   out.beta = newmark.number_or("beta", "1", Range::between(0.25, 2.0), 0.25 * (out.gamma + 0.5) * (out.gamma + 0.5));
@@ -162,6 +172,9 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
     out.regions.emplace(name, region);
   }
   out.boundaries = read_boundaries(root.object("boundaries"));
+  out.loads = read_loads(root);
+  if (!out.boundaries.ponds.empty() && out.phreatic_line.empty())
+    root.fail("boundaries/ponded_water", "the model is dry: give a phreatic_line, which meets the pond at its level");
   out.geostatic = read_geostatic(root.object_or_empty("geostatic"));
   out.shake = read_shake(root.object("shake"));
   out.output = read_output(root.object_or_empty("output"));

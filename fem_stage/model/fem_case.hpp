@@ -1,4 +1,4 @@
-// fem.json as plain data. docs/user_guide.md lists every key; each is read, checked and defaulted in fem_case.cpp.
+// fem.json as plain data. docs/fem.md lists every key; each is read, checked and defaulted in fem_case.cpp.
 #pragma once
 
 #include <array>
@@ -11,6 +11,8 @@
 #include "common/provenance.hpp"
 #include "fem_stage/element/sspquadup.hpp"
 #include "fem_stage/material/material_points.hpp"
+#include "fem_stage/mesh/rectangle_mesh.hpp"
+#include "fem_stage/model/boundary_options.hpp"
 
 namespace tailrun::fem {
 
@@ -22,34 +24,29 @@ struct RegionOptions {
 
 struct MeshOptions {
   std::filesystem::path geometry;            // .geo, or
-  std::filesystem::path file;                // .msh
+  std::filesystem::path file;                // .msh, or
+  std::optional<RectangleMesh> rectangle;    // made here
   std::map<std::string, double> parameters;  // ONELAB numbers for the geometry
   double snap_to_phreatic_line = 0.0;        // m: nodes nearer than this to the line are moved onto it; 0 = off
 };
 
-enum class BaseKind { lysmer_dashpot, rigid };
-
-struct BoundaryOptions {
-  std::string base_line;
-  BaseKind base = BaseKind::lysmer_dashpot;
-  double rock_density = 0.0, rock_shear_velocity = 0.0;  // kg/m3, m/s
-  bool base_tied = false;                                // one horizontal freedom for the whole base
-  std::vector<std::string> tied_column_regions;          // free-field columns: nodes of equal height move together
-  std::vector<std::string> periodic_lines;               // nodes of equal height on these lines are tied, p included
-  std::vector<std::string> roller_lines;                 // u_x = 0 throughout
-  std::vector<std::string> geostatic_roller_lines;       // u_x = 0 in the geostatic stage, reactions kept afterwards
+// How the water pressure before the earthquake is found.
+enum class Seepage {
+  isotropic,    // steady seepage with one permeability everywhere
+  by_region,    // steady seepage with the regions' permeabilities
+  hydrostatic,  // rho_f g (level - y) below the phreatic line
 };
 
 struct GeostaticOptions {
-  double K0 = 0.5;                // at-rest ratio of the elastic stage: Poisson ratio K0 / (1 + K0)
-  bool isotropic_seepage = true;  // one permeability everywhere for the initial water pressure
-  double settle_time = 0.0;       // s of pseudo-time after the switch to the plastic models
-  double settle_step = 0.1;       // s
-  double tolerance = 1e-3;        // largest residual force that is accepted at the end, of the weight
+  double K0 = 0.5;  // at-rest ratio of the elastic stage: Poisson ratio K0 / (1 + K0)
+  Seepage seepage = Seepage::isotropic;
+  double settle_time = 0.0;  // s of pseudo-time after the switch to the plastic models
+  double settle_step = 0.1;  // s
+  double tolerance = 1e-3;   // largest residual force that is accepted at the end, of the weight
 };
 
 struct ShakeOptions {
-  std::filesystem::path motion;
+  std::filesystem::path motion;    // empty: none, loads alone drive the run
   double peak_acceleration = 0.0;  // m/s2, 0 = as recorded
   double duration = 0.0;           // s
   double time_step = 0.005;        // s
@@ -93,6 +90,7 @@ struct FemCase {
   std::vector<MaterialDefinition> materials;
   std::map<std::string, RegionOptions> regions;
   BoundaryOptions boundaries;
+  std::vector<LoadOptions> loads;
   GeostaticOptions geostatic;
   ShakeOptions shake;
   OutputOptions output;

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <set>
+#include <map>
 
 #include "common/error.hpp"
 #include "fem_stage/boundary/phreatic_line.hpp"
+#include "fem_stage/boundary/stage_freedoms.hpp"
 #include "fem_stage/mesh/gmsh_mesh.hpp"
 
 namespace tailrun::fem {
@@ -41,68 +41,82 @@ void gather_adjacency(Model& model) {
   }
 }
 
-std::vector<std::int64_t> nodes_of_regions(const Mesh& mesh, const std::vector<std::string>& regions) {
-  std::set<std::int64_t> nodes;
-  for (const auto& name : regions) {
-    const auto it = std::find(mesh.region_names.begin(), mesh.region_names.end(), name);
-    if (it == mesh.region_names.end())
-      throw InputError(fmt::format("/boundaries/tied_column_regions: the mesh has no region '{}'.{}", name,
-                                   did_you_mean(name, mesh.region_names)));
-    const auto id = static_cast<std::int32_t>(it - mesh.region_names.begin());
-    for (std::size_t e = 0; e < mesh.elements(); ++e)
-      if (mesh.region[e] == id)
-        nodes.insert(mesh.quads.begin() + static_cast<long>(4 * e), mesh.quads.begin() + static_cast<long>(4 * e + 4));
-  }
-  return {nodes.begin(), nodes.end()};
-}
-
-// Splits nodes of the tied columns into connected columns (left and right of the dam must not be tied to each other).
-std::vector<std::vector<std::int64_t>> separate_columns(const Mesh& mesh, const std::vector<std::int64_t>& nodes) {
-  const std::set<std::int64_t> inside(nodes.begin(), nodes.end());
-  std::vector<std::int64_t> parent(mesh.nodes());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](std::int64_t n) {
-    while (parent[static_cast<std::size_t>(n)] != n) n = parent[static_cast<std::size_t>(n)];
-    return n;
-  };
-  for (std::size_t e = 0; e < mesh.elements(); ++e) {
-    const bool all =
-        std::all_of(mesh.quads.begin() + static_cast<long>(4 * e), mesh.quads.begin() + static_cast<long>(4 * e + 4),
-                    [&](auto n) { return inside.contains(n); });
-    if (!all) continue;
-    for (int a = 1; a < 4; ++a) {
-      const auto p = root(mesh.quads[4 * e]), q = root(mesh.quads[4 * e + static_cast<std::size_t>(a)]);
-      parent[static_cast<std::size_t>(std::max(p, q))] = std::min(p, q);
+// Loads of the case and the weight of ponded water, as nodal forces.
+void gather_loads(const FemCase& options, Model& model) {
+  for (const auto& load : options.loads) {
+    NodalLoad out;
+    if (load.place.line.empty()) {
+      out.forces.push_back({nodes_at(model.mesh, load.place).front(), load.traction[0], load.traction[1]});
+    } else {
+      const auto edges = boundary_edges(model.mesh, model.thickness, load.place.line, load.place.where);
+      out.forces = line_forces(edges, load.traction, load.pressure);
     }
+    out.history = load.history;
+    out.in_geostatic = load.when != When::shake;
+    out.in_shake = load.when != When::geostatic;
+    model.loads.push_back(std::move(out));
   }
-  std::map<std::int64_t, std::vector<std::int64_t>> columns;
-  for (const auto node : nodes) columns[root(node)].push_back(node);
-  std::vector<std::vector<std::int64_t>> out;
-  for (auto& [unused, column] : columns) out.push_back(std::move(column));
-  return out;
+  for (const auto& pond : options.boundaries.ponds)
+    for (const auto& line : pond.lines) {
+      const auto edges = boundary_edges(model.mesh, model.thickness, line, pond.where);
+      model.loads.push_back(
+          {pond_forces(model.mesh, edges, pond.level, options.fluid_density * options.gravity), {}, true, true});
+    }
 }
 
-Freedoms common_freedoms(const Model& model) {
-  Freedoms freedoms(model.nodes());
-  for (std::size_t n = 0; n < model.nodes(); ++n)
-    if (model.pressure_fixed[n]) freedoms.fix(static_cast<std::int64_t>(n), freedom_p);
-  const auto& boundaries = model.options->boundaries;
-  for (const auto& line : boundaries.roller_lines)
-    for (const auto node : model.mesh.nodes_of_line(line)) freedoms.fix(node, freedom_ux);
-  for (const auto node : model.base_nodes) freedoms.fix(node, freedom_uy);
-  const double tolerance = 1e-3 * *std::min_element(model.elements.size.begin(), model.elements.size.end());
-  constexpr Freedom displacement[] = {freedom_ux, freedom_uy};
-  for (const auto& column : separate_columns(model.mesh, nodes_of_regions(model.mesh, boundaries.tied_column_regions)))
-    tie_equal_heights(freedoms, model.mesh, column, tolerance, displacement);
-  std::set<std::int64_t> periodic;
-  for (const auto& line : boundaries.periodic_lines) {
-    const auto nodes = model.mesh.nodes_of_line(line);
-    periodic.insert(nodes.begin(), nodes.end());
+// 2-norm of the nodal forces of all loads at their largest.
+double load_scale(const Model& model) {
+  std::vector<double> force(2 * model.nodes(), 0.0);
+  for (const auto& load : model.loads)
+    for (const auto& f : load.forces) {
+      force[2 * static_cast<std::size_t>(f.node)] += load.history.largest() * f.x;
+      force[2 * static_cast<std::size_t>(f.node) + 1] += load.history.largest() * f.y;
+    }
+  double squares = 0.0;
+  for (const double f : force) squares += f * f;
+  return std::sqrt(squares);
+}
+
+void hold_pressure(Model& model, std::int64_t node, double value) {
+  model.pressure_fixed[static_cast<std::size_t>(node)] = 1;
+  model.held_pressure[static_cast<std::size_t>(node)] = value;
+}
+
+void gather_held_pressures(const FemCase& options, Model& model) {
+  model.pressure_fixed = on_or_above_phreatic_line(model.mesh, options.phreatic_line);
+  model.held_pressure.assign(model.nodes(), 0.0);
+  for (const auto& held : options.boundaries.held_pressure)
+    for (const auto node : nodes_at(model.mesh, {held.line, {}, held.where})) {
+      const auto n = static_cast<std::size_t>(node);
+      hold_pressure(model, node, held.field[0] + held.field[1] * model.mesh.x(n) + held.field[2] * model.mesh.y(n));
+    }
+  for (const auto& pond : options.boundaries.ponds)
+    for (const auto& line : pond.lines)
+      for (const auto node : nodes_at(model.mesh, {line, {}, pond.where}))
+        if (const double depth = pond.level - model.mesh.y(static_cast<std::size_t>(node)); depth >= 0.0)
+          hold_pressure(model, node, options.fluid_density * options.gravity * depth);
+}
+
+// Nodes of the base and the area that each stands for.
+void gather_base(Model& model) {
+  const Mesh& mesh = model.mesh;
+  model.base_nodes = mesh.nodes_of_line(model.options->boundaries.base_line);
+  // The free-field columns' thickness widens the dashpots below them.
+  std::map<std::array<std::int64_t, 2>, double> edge_thickness;
+  for (std::size_t e = 0; e < model.count(); ++e)
+    for (std::size_t a = 0; a < 4; ++a) {
+      const auto p = mesh.quads[4 * e + a], q = mesh.quads[4 * e + (a + 1) % 4];
+      edge_thickness[{std::min(p, q), std::max(p, q)}] = model.thickness[e];
+    }
+  model.base_area.assign(model.base_nodes.size(), 0.0);
+  for (const auto& [a, b] : mesh.lines.at(model.options->boundaries.base_line)) {
+    const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b);
+    const double half = 0.5 * std::hypot(mesh.x(ia) - mesh.x(ib), mesh.y(ia) - mesh.y(ib)) *
+                        edge_thickness.at({std::min(a, b), std::max(a, b)});
+    for (const auto node : {a, b})
+      model.base_area[static_cast<std::size_t>(
+          std::lower_bound(model.base_nodes.begin(), model.base_nodes.end(), node) - model.base_nodes.begin())] += half;
   }
-  constexpr Freedom all[] = {freedom_ux, freedom_uy, freedom_p};
-  const std::vector<std::int64_t> tied(periodic.begin(), periodic.end());
-  tie_equal_heights(freedoms, model.mesh, tied, tolerance, all);
-  return freedoms;
 }
 
 }  // namespace
@@ -122,7 +136,8 @@ Model build_model(const FemCase& options, const std::filesystem::path& mesh_file
     const RegionOptions& region = options.regions.at(mesh.region_names[static_cast<std::size_t>(mesh.region[e])]);
     material_of_element.push_back(region.material);
     model.thickness.push_back(region.thickness);
-    const double to_mobility = 1.0 / (options.fluid_density * std::max(options.gravity, 1e-300));
+    // Hydraulic conductivity is defined by the weight of water on earth, whatever gravity the case has.
+    const double to_mobility = 1.0 / (options.fluid_density * (options.gravity > 0.0 ? options.gravity : 9.81));
     model.permeability_x.push_back(region.permeability[0] * to_mobility);
     model.permeability_y.push_back(region.permeability[1] * to_mobility);
   }
@@ -148,43 +163,38 @@ Model build_model(const FemCase& options, const std::filesystem::path& mesh_file
   for (const double m : model.nodal_mass) squares += m * m;
   model.weight = (options.gravity > 0.0 ? options.gravity : 9.81) * std::sqrt(squares);
 
-  model.pressure_fixed = on_or_above_phreatic_line(mesh, options.phreatic_line);
-  model.base_nodes = mesh.nodes_of_line(options.boundaries.base_line);
-  // The free-field columns' thickness widens the dashpots below them.
-  std::map<std::array<std::int64_t, 2>, double> edge_thickness;
-  for (std::size_t e = 0; e < count; ++e)
-    for (std::size_t a = 0; a < 4; ++a) {
-      const auto p = mesh.quads[4 * e + a], q = mesh.quads[4 * e + (a + 1) % 4];
-      edge_thickness[{std::min(p, q), std::max(p, q)}] = model.thickness[e];
-    }
-  model.base_area.assign(model.base_nodes.size(), 0.0);
-  for (const auto& [a, b] : mesh.lines.at(options.boundaries.base_line)) {
-    const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b);
-    const double half = 0.5 * std::hypot(mesh.x(ia) - mesh.x(ib), mesh.y(ia) - mesh.y(ib)) *
-                        edge_thickness.at({std::min(a, b), std::max(a, b)});
-    for (const auto node : {a, b})
-      model.base_area[static_cast<std::size_t>(
-          std::lower_bound(model.base_nodes.begin(), model.base_nodes.end(), node) - model.base_nodes.begin())] += half;
-  }
+  gather_loads(options, model);
+  if (const double scale = load_scale(model); scale > 0.0)
+    model.weight = options.gravity > 0.0 ? std::max(model.weight, scale) : scale;
+  gather_held_pressures(options, model);
+  if (options.boundaries.base != BaseKind::none) gather_base(model);
+  check_support(model);
   return model;
 }
 
-Freedoms geostatic_freedoms(const Model& model) {
-  Freedoms freedoms = common_freedoms(model);
-  for (const auto node : model.base_nodes) freedoms.fix(node, freedom_ux);
-  for (const auto& line : model.options->boundaries.geostatic_roller_lines)
-    for (const auto node : model.mesh.nodes_of_line(line)) freedoms.fix(node, freedom_ux);
-  return freedoms;
-}
-
-Freedoms shaking_freedoms(const Model& model) {
-  Freedoms freedoms = common_freedoms(model);
-  const auto& boundaries = model.options->boundaries;
-  if (boundaries.base == BaseKind::rigid)
-    for (const auto node : model.base_nodes) freedoms.fix(node, freedom_ux);
-  else if (boundaries.base_tied)
-    for (const auto node : model.base_nodes) freedoms.tie(model.base_nodes.front(), node, freedom_ux);
-  return freedoms;
+std::vector<std::int64_t> nodes_at(const Mesh& mesh, const Place& place) {
+  if (!place.line.empty()) {
+    try {
+      return mesh.nodes_of_line(place.line);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: {}", place.where, error.what()));
+    }
+  }
+  const std::size_t node = mesh.nearest_node(place.point[0], place.point[1]);
+  const std::size_t element = mesh.nearest_element(place.point[0], place.point[1]);
+  double reach = 0.0;
+  for (std::size_t a = 0; a < 4; ++a) {
+    const auto p = static_cast<std::size_t>(mesh.quads[4 * element + a]),
+               q = static_cast<std::size_t>(mesh.quads[4 * element + (a + 1) % 4]);
+    reach = std::max(reach, 0.5 * std::hypot(mesh.x(p) - mesh.x(q), mesh.y(p) - mesh.y(q)));
+  }
+  const double distance = std::hypot(mesh.x(node) - place.point[0], mesh.y(node) - place.point[1]);
+  if (distance > reach)
+    throw InputError(
+        fmt::format("{}: the point ({:.4g}, {:.4g}) is {:.3g} m from the nearest node ({:.4g}, {:.4g}), but at most "
+                    "half an element ({:.3g} m) is allowed",
+                    place.where, place.point[0], place.point[1], distance, mesh.x(node), mesh.y(node), reach));
+  return {static_cast<std::int64_t>(node)};
 }
 
 MaterialPoints make_material_points(const Model& model) {

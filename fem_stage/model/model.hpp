@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fem_stage/boundary/freedoms.hpp"
+#include "fem_stage/boundary/nodal_loads.hpp"
 #include "fem_stage/element/sspquadup.hpp"
 #include "fem_stage/material/material_points.hpp"
 #include "fem_stage/mesh/mesh.hpp"
@@ -26,10 +27,12 @@ struct Model {
   std::vector<double> permeability_x, permeability_y;  // m4/(N s), (M): k / (rho_f g)
   std::vector<double> stabilisation;                   // m4/N, (M): alpha of the pressure stabilisation
   std::vector<double> nodal_mass;                      // kg, (N), lumped
-  std::vector<char> pressure_fixed;                    // (N): p = 0 held (on and above the phreatic line)
-  std::vector<double> base_area;                       // m2, per node of base_nodes: tributary area
+  std::vector<char> pressure_fixed;   // (N): p held: on and above the phreatic line, drained lines, under a pond
+  std::vector<double> held_pressure;  // Pa, (N): the value where it is held, 0 elsewhere
+  std::vector<NodalLoad> loads;       // beside gravity: lines, points, ponded water
+  std::vector<double> base_area;      // m2, per node of base_nodes: tributary area
   std::vector<std::int64_t> base_nodes;
-  double weight = 0.0;  // N, 2-norm of the nodal weights: scale of forces
+  double weight = 0.0;  // N, 2-norm of the nodal weights and of the loads: scale of forces
 
   // (node -> elements) in compressed rows, so that nodal sums are gathered in a fixed order by any thread
   std::vector<int> adjacency_start, adjacency;  // entries are 4 * element + local node
@@ -57,9 +60,8 @@ struct State {
 // regions of the mesh that the case does not describe (and the other way round), lines that do not exist.
 Model build_model(const FemCase& options, const std::filesystem::path& mesh_file);
 
-// Freedoms of the geostatic stage (base fixed, sides on rollers) and of shaking (base and sides released).
-Freedoms geostatic_freedoms(const Model& model);
-Freedoms shaking_freedoms(const Model& model);
+// The nodes of a line, or the one nearest to a point, which must lie within half an element of it. Throws InputError.
+std::vector<std::int64_t> nodes_at(const Mesh& mesh, const Place& place);
 
 MaterialPoints make_material_points(const Model& model);
 

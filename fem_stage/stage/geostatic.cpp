@@ -9,6 +9,8 @@
 
 #include "common/error.hpp"
 #include "common/progress.hpp"
+#include "fem_stage/boundary/phreatic_line.hpp"
+#include "fem_stage/boundary/stage_freedoms.hpp"
 #include "fem_stage/solver/newmark.hpp"
 
 namespace tailrun::fem {
@@ -22,17 +24,27 @@ namespace {
                   what, equations.describe(equation, mesh)));
 }
 
-std::vector<double> gravity_load(const Model& model) {
+// Weight, and the loads of this stage.
+std::vector<double> load_at_rest(const Model& model) {
   std::vector<double> force(2 * model.nodes(), 0.0);
   for (std::size_t n = 0; n < model.nodes(); ++n) force[2 * n + 1] = -model.nodal_mass[n] * model.options->gravity;
+  for (const auto& item : model.loads)
+    if (item.in_geostatic) add_load(item, 0.0, force);
   return force;
 }
 
-// H p = f_p with p = 0 on and above the phreatic line.
+// H p = f_p with p held at 0 on and above the phreatic line and at what the boundaries say.
 void solve_seepage(const Model& model, const Freedoms& freedoms, const ElementForces& forces, State& state) {
   const auto equations = freedoms.number(false, true);
-  std::fill(state.pressure.begin(), state.pressure.end(), 0.0);
+  state.pressure = model.held_pressure;
   if (equations.count == 0) return;
+  if (model.options->geostatic.seepage == Seepage::hydrostatic) {
+    for (std::size_t n = 0; n < model.nodes(); ++n)
+      if (equations.number[3 * n + freedom_p] >= 0)
+        state.pressure[n] = model.options->fluid_density * model.options->gravity *
+                            (phreatic_elevation(model.options->phreatic_line, model.mesh.x(n)) - model.mesh.y(n));
+    return;
+  }
   SymmetricSystem system(equations.count, element_equations(model.mesh, equations), 12);
   std::vector<double> right(static_cast<std::size_t>(equations.count), 0.0);
   double local[144];
@@ -42,9 +54,12 @@ void solve_seepage(const Model& model, const Freedoms& freedoms, const ElementFo
     system.add_element(e, local);
     for (std::size_t a = 0; a < 4; ++a) {
       const int equation = equations.number[3 * static_cast<std::size_t>(model.mesh.quads[4 * e + a]) + freedom_p];
-      if (equation >= 0)
-        right[static_cast<std::size_t>(equation)] -=
-            model.permeability_y[e] * weight * model.elements.gradient_y[4 * e + a];
+      if (equation < 0) continue;
+      right[static_cast<std::size_t>(equation)] -=
+          model.permeability_y[e] * weight * model.elements.gradient_y[4 * e + a];
+      for (std::size_t b = 0; b < 4; ++b)
+        if (const double held = model.held_pressure[static_cast<std::size_t>(model.mesh.quads[4 * e + b])]; held != 0.0)
+          right[static_cast<std::size_t>(equation)] -= local[12 * (3 * a + 2) + 3 * b + 2] * held;
     }
   }
   try {
@@ -106,7 +121,7 @@ GeostaticReport run_geostatic(const Model& given, MaterialPoints& points, State&
   const GeostaticOptions& options = given.options->geostatic;
   GeostaticReport report;
   Model model = given;  // with the permeability of this stage
-  if (options.isotropic_seepage) {
+  if (options.seepage == Seepage::isotropic) {
     std::fill(model.permeability_x.begin(), model.permeability_x.end(), 1e-3);
     std::fill(model.permeability_y.begin(), model.permeability_y.end(), 1e-3);
   }
@@ -131,7 +146,7 @@ GeostaticReport run_geostatic(const Model& given, MaterialPoints& points, State&
   points.start_elastic_stage(poisson);
   forces.reset(points, state);
   const auto equations = freedoms.number(true, false);
-  const auto load = gravity_load(model);
+  const auto load = load_at_rest(model);
   const std::vector<double> none(2 * nodes, 0.0);
   SymmetricSystem system(equations.count, element_equations(model.mesh, equations), 12);
   double local[144];

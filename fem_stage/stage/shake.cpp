@@ -9,6 +9,7 @@
 
 #include "common/error.hpp"
 #include "common/progress.hpp"
+#include "fem_stage/boundary/stage_freedoms.hpp"
 #include "fem_stage/output/state_file.hpp"
 
 namespace tailrun::fem {
@@ -24,9 +25,14 @@ std::vector<Dashpot> base_dashpots(const Model& model) {
   const auto& boundaries = model.options->boundaries;
   std::vector<Dashpot> dashpots;
   if (boundaries.base != BaseKind::lysmer_dashpot) return dashpots;
-  for (std::size_t i = 0; i < model.base_nodes.size(); ++i)
-    dashpots.push_back({model.base_nodes[i], freedom_ux,
-                        boundaries.rock_density * boundaries.rock_shear_velocity * model.base_area[i]});
+  for (std::size_t i = 0; i < model.base_nodes.size(); ++i) {
+    const double area = model.base_area[i];
+    dashpots.push_back(
+        {model.base_nodes[i], freedom_ux, boundaries.rock_density * boundaries.rock_shear_velocity * area});
+    if (boundaries.rock_p_velocity > 0.0)
+      dashpots.push_back(
+          {model.base_nodes[i], freedom_uy, boundaries.rock_density * boundaries.rock_p_velocity * area});
+  }
   return dashpots;
 }
 
@@ -80,6 +86,7 @@ class Stepper {
 }  // namespace
 
 Motion case_motion(const FemCase& options) {
+  if (options.shake.motion.empty()) return {.name = "none", .time_step = 0.0, .acceleration = {}, .velocity = {}};
   Motion motion = read_motion(options.shake.motion);
   if (options.shake.peak_acceleration > 0.0)
     motion = scaled_to_peak(std::move(motion), options.shake.peak_acceleration);
@@ -106,7 +113,10 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
     }
     const double velocity = rigid ? 0.0 : motion.velocity_at(time);
     for (const auto& dashpot : dashpots)
-      force[2 * static_cast<std::size_t>(dashpot.node)] += dashpot.coefficient * velocity;
+      if (dashpot.freedom == freedom_ux)
+        force[2 * static_cast<std::size_t>(dashpot.node)] += dashpot.coefficient * velocity;
+    for (const auto& item : model.loads)
+      if (item.in_shake) add_load(item, time, force);
   };
 
   // 2. The solver, its matrix made from the geostatic moduli.

@@ -22,7 +22,7 @@ struct ShakeReport {
   std::string failure;                 // empty when the run reached its end
 };
 
-// The motion as the case wants it: read, scaled. Throws InputError.
+// The motion as the case wants it: read, scaled; one without values when the case has none. Throws InputError.
 Motion case_motion(const FemCase& options);
 
 // Writes snapshot_t*.h5, history.csv and quality.csv into `folder`. On failure of the computation the last good state

@@ -1,0 +1,99 @@
+#include "fem_stage/boundary/time_history.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+#include <string>
+
+#include "common/error.hpp"
+
+namespace tailrun::fem {
+
+TimeHistory TimeHistory::ramp(double start, double duration) {
+  TimeHistory out;
+  out.kind_ = Kind::ramp;
+  out.start_ = start;
+  out.duration_ = duration;
+  return out;
+}
+
+TimeHistory TimeHistory::ricker(double frequency, double delay) {
+  TimeHistory out;
+  out.kind_ = Kind::ricker;
+  out.frequency_ = frequency;
+  out.start_ = delay;
+  return out;
+}
+
+TimeHistory TimeHistory::sine(double frequency, double start) {
+  TimeHistory out;
+  out.kind_ = Kind::sine;
+  out.frequency_ = frequency;
+  out.start_ = start;
+  return out;
+}
+
+TimeHistory TimeHistory::table(const std::filesystem::path& path) {
+  std::ifstream stream(path);
+  if (!stream) throw InputError(fmt::format("{}: no such file, or it cannot be read", path.string()));
+  TimeHistory out;
+  out.kind_ = Kind::table;
+  int row = 0;
+  for (std::string line; std::getline(stream, line);) {
+    ++row;
+    for (char& c : line)
+      if (c == ',' || c == '\r') c = ' ';
+    if (line.find_first_not_of(" \t") == std::string::npos) continue;
+    std::istringstream words(line);
+    double time = 0.0, factor = 0.0;
+    if (!(words >> time >> factor) || !std::isfinite(time) || !std::isfinite(factor)) {
+      if (row == 1) continue;  // a header
+      throw InputError(
+          fmt::format("{}: row {}: found '{}', but 'time [s], factor' is required", path.string(), row, line));
+    }
+    if (!out.time_.empty() && time <= out.time_.back())
+      throw InputError(fmt::format("{}: row {}: time {:g} s does not ascend (the row before has {:g} s)", path.string(),
+                                   row, time, out.time_.back()));
+    out.time_.push_back(time);
+    out.factor_.push_back(factor);
+  }
+  if (out.time_.size() < 2)
+    throw InputError(fmt::format("{}: at least two rows 'time [s], factor' are required", path.string()));
+  return out;
+}
+
+double TimeHistory::at(double time) const {
+  switch (kind_) {
+    case Kind::constant:
+      return 1.0;
+    case Kind::ramp:
+      if (time <= start_) return duration_ == 0.0 && time == start_ ? 1.0 : 0.0;
+      return time >= start_ + duration_ ? 1.0 : (time - start_) / duration_;
+    case Kind::ricker: {
+      const double root = std::numbers::pi * frequency_ * (time - start_), a = root * root;
+      return (1.0 - 2.0 * a) * std::exp(-a);
+    }
+    case Kind::sine:
+      return time <= start_ ? 0.0 : std::sin(2.0 * std::numbers::pi * frequency_ * (time - start_));
+    case Kind::table:
+      break;
+  }
+  if (time <= time_.front()) return factor_.front();
+  if (time >= time_.back()) return factor_.back();
+  const auto i = static_cast<std::size_t>(std::upper_bound(time_.begin(), time_.end(), time) - time_.begin());
+  const double s = (time - time_[i - 1]) / (time_[i] - time_[i - 1]);
+  return factor_[i - 1] + s * (factor_[i] - factor_[i - 1]);
+}
+
+double TimeHistory::largest() const {
+  if (kind_ != Kind::table) return 1.0;
+  double largest = 0.0;
+  for (const double f : factor_) largest = std::max(largest, std::abs(f));
+  return largest;
+}
+
+}  // namespace tailrun::fem
