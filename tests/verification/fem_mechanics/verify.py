@@ -1,0 +1,268 @@
+#!/usr/bin/python3
+"""Runs a verification scene of fem_stage and compares it with a closed form or with OpenSees' tables.
+
+verify.py FEM_STAGE REPOSITORY CHECK OUTPUT_FOLDER
+
+Each check returns one row (row of the verification table, quantity, error, ceiling). It is printed, written to
+<test>.json in the folder that TAILRUN_VERIFICATION_DIR names, if any, and the exit status is 1 when the error exceeds
+its ceiling. Closed forms are written out here and nowhere in the program.
+"""
+import csv
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import time
+
+import h5py
+import numpy as np
+
+
+class State:
+    """One state file: arrays by name."""
+
+    def __init__(self, path):
+        with h5py.File(path) as f:
+            self.x = f["VTKHDF/Points"][()][:, :2]
+            self.quads = f["VTKHDF/Connectivity"][()].reshape(-1, 4)
+            self.node = {name: f["VTKHDF/PointData"][name][()] for name in f["VTKHDF/PointData"]}
+            self.cell = {name: f["VTKHDF/CellData"][name][()] for name in f["VTKHDF/CellData"]}
+        self.centre = self.x[self.quads].mean(axis=1)
+
+
+class Runner:
+    def __init__(self, program, root, output):
+        self.program, self.root, self.output = program, pathlib.Path(root), pathlib.Path(output)
+
+    def scene(self, case):
+        return json.loads((self.root / "cases/verification" / case).read_text())
+
+    def table(self, name):
+        with open(self.root / "tests/data/opensees" / name) as f:
+            return [{k: float(v) for k, v in row.items()} for row in csv.DictReader(f)]
+
+    def run(self, case, change=None, label="run"):
+        """Runs a scene, changed by `change` where given. Returns its folder."""
+        folder = self.output / label
+        folder.mkdir(parents=True, exist_ok=True)
+        for old in folder.glob("*"):
+            old.unlink()
+        path = self.root / "cases/verification" / case
+        if change is not None:
+            scene = self.scene(case)
+            change(scene)
+            path = folder / "fem.json"
+            path.write_text(json.dumps(scene, indent=1))
+        subprocess.run([self.program, "run", str(path), "-o", str(folder), "--quiet", "--threads", "1"], check=True)
+        return folder
+
+
+def snapshots(folder):
+    files = sorted(folder.glob("snapshot_t*.h5"), key=lambda p: float(p.stem.split("_t")[1]))
+    return [State(p) for p in files]
+
+
+def history(folder):
+    with open(folder / "history.csv") as f:
+        rows = list(csv.DictReader(f))
+    return {k: np.array([float(r[k]) for r in rows]) for k in rows[0]}
+
+
+def patch_test(r):
+    s = snapshots(r.run("patch_test/fem.json"))[-1]
+    scene = r.scene("patch_test/fem.json")
+    young, nu = scene["materials"]["soil"]["youngs_modulus"], scene["materials"]["soil"]["poisson"]
+    sxx, syy, sxy = 10e3, -7e3, 4e3  # the scene's tractions
+    exx = (1 + nu) / young * ((1 - nu) * sxx - nu * syy)
+    eyy = (1 + nu) / young * ((1 - nu) * syy - nu * sxx)
+    gamma = 2 * (1 + nu) / young * sxy
+    x, y = s.x.T
+    wanted = np.stack([exx * x + gamma * y, eyy * y], axis=1)  # the bottom does not turn
+    u = np.abs(s.node["displacement"][:, :2] - wanted).max() / np.abs(wanted).max()
+    p0, px, py = scene["boundaries"]["held_pressure"][0]["pressure"]
+    pressure = p0 + px * x + py * y
+    p = np.abs(s.node["pore_pressure"] - pressure).max() / np.abs(pressure).max()
+    return "patch_test", "largest error of displacement and pore pressure over their largest values", max(u, p), 1e-12
+
+
+def tip(s):
+    return s.node["displacement"][np.abs(s.x[:, 0] - 10.0) < 1e-9, 1].mean()
+
+
+def cantilever_timoshenko(r):
+    """Plane strain: E' = E/(1 - nu^2); shear factor 5/6."""
+    force, length, depth, young, nu = 10e3, 10.0, 2.0, 1e8, 0.3
+    inertia, plane, shear = depth**3 / 12, young / (1 - nu**2), young / (2 * (1 + nu))
+    wanted = -(force * length**3 / (3 * plane * inertia) + force * length / (5 / 6 * shear * depth))
+    found = tip(snapshots(r.run("cantilever/fem.json"))[-1])
+    return "cantilever", f"tip deflection, regular mesh: {found:.6g} m for {wanted:.6g} m", abs(found / wanted - 1), 0.03
+
+
+def cantilever_opensees(r):
+    """Every displacement of both meshes. The scenes have OpenSees' hourglass integrals."""
+    worst = 0.0
+    for case, table in (("fem", "regular"), ("distorted", "distorted")):
+        s = snapshots(r.run(f"cantilever/{case}.json", label=table))[-1]
+        peer = {(round(n["x_m"], 6), round(n["y_m"], 6)): (n["ux_m"], n["uy_m"])
+                for n in r.table(f"cantilever_{table}_nodes.csv")}
+        wanted = np.array([peer[round(x, 6), round(y, 6)] for x, y in s.x])
+        worst = max(worst, np.abs(s.node["displacement"][:, :2] - wanted).max() / np.abs(wanted).max())
+    return "cantilever", "displacements, regular and distorted, against OpenSees' over the tip's", worst, 1e-6
+
+
+def terzaghi(depth, time_factor, height):
+    """Pore pressure over the load, `depth` below the drained face (Terzaghi 1925)."""
+    odd = 2 * np.arange(400) + 1
+    z = np.asarray(depth)[..., None]
+    return np.sum(4 / (math.pi * odd) * np.sin(odd * math.pi * z / (2 * height))
+                  * np.exp(-(odd * math.pi) ** 2 * time_factor / 4), axis=-1)
+
+
+def consolidation_coefficient(young, nu, permeability, fluid_modulus, porosity):
+    """c_v with compressible water, and the share of a load that the water takes at first."""
+    oedometric = young * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
+    water = fluid_modulus / porosity
+    return permeability / 9810.0 / (1 / oedometric + 1 / water), water / (water + oedometric)
+
+
+def terzaghi_series(r):
+    scene = r.scene("terzaghi/fem.json")
+    soil = scene["materials"]["soil"]
+    cv, share = consolidation_coefficient(soil["youngs_modulus"], soil["poisson"], 1e-6,
+                                          scene["fluid"]["bulk_modulus"], soil["porosity"])
+    error = 0.0
+    for s, t in zip(snapshots(r.run("terzaghi/fem.json")), scene["output"]["snapshots"]):
+        wanted = share * terzaghi(10.0 - s.x[:, 1], cv * t / 100.0, 10.0)
+        error = max(error, np.abs(s.node["pore_pressure"] / 100e3 - wanted).max())
+    return "terzaghi", "pore pressure at all nodes and times T_v 0.01 to 1, over the load", error, 0.01
+
+
+def terzaghi_opensees(r):
+    def compatible(scene):
+        scene["element"] = {"pressure_quadrature": 1}
+        scene["shake"]["newmark"] = {"gamma": 1, "beta": 0.5, "theta": 1}
+
+    error = 0.0
+    table = r.table("consolidation_top.csv")
+    times = r.scene("terzaghi/fem.json")["output"]["snapshots"]
+    for s, t in zip(snapshots(r.run("terzaghi/fem.json", compatible)), times):
+        peer = {round(n["y_m"], 4): n["p_kPa"] * 1e3 for n in table if abs(n["t_s"] - t) < 1e-3 * t}
+        wanted = np.array([peer[round(y, 4)] for y in s.x[:, 1]])
+        error = max(error, np.abs(s.node["pore_pressure"] - wanted).max() / 100e3)
+    return "terzaghi", "pore pressure against OpenSees' column in the compatible mode, over the load", error, 1e-4
+
+
+def terzaghi_order(r, theta, wanted):
+    """From three step lengths: log2 of the ratio of successive changes. The load rises within T_v = 0.1, so that the
+    solution is smooth in time."""
+    pressures = []
+    for steps in (60, 120, 240):
+        def smooth(scene, steps=steps):
+            scene["loads"][0]["history"] = {"type": "ramp", "duration": 8175}
+            scene["shake"].update(duration=24525, time_step=24525 / steps,
+                                  newmark={"gamma": theta, "beta": 0.25 * (theta + 0.5) ** 2, "theta": theta},
+                                  solver={"tolerance": 1e-12})
+            scene["output"] = {"snapshots": [24525], "history_interval": 24525}
+        pressures.append(snapshots(r.run("terzaghi/fem.json", smooth, f"steps{steps}"))[-1].node["pore_pressure"])
+    a, b, c = pressures
+    order = math.log2(np.linalg.norm(a - b) / np.linalg.norm(b - c))
+    return "terzaghi", f"order in time with theta {theta:g}: {order:.4g}, falls short of {wanted} by", wanted - order, 0.1
+
+
+def terzaghi_order_1(r):
+    return terzaghi_order(r, 1.0, 1)
+
+
+def terzaghi_order_2(r):
+    return terzaghi_order(r, 0.5, 2)
+
+
+def sealed_element(r):
+    s = snapshots(r.run("sealed_element/fem.json"))[-1]
+    wanted = 10e3 * consolidation_coefficient(1e7, 0.3, 0.0, 2e7, 0.4)[1]  # 7878.8 Pa
+    return "sealed_element", f"pore pressure, {wanted:.1f} Pa wanted", np.abs(s.node["pore_pressure"] / wanted - 1).max(), 1e-4
+
+
+def sealed_column(r):
+    s = snapshots(r.run("sealed_element/column.json"))[-1]
+    cv, share = consolidation_coefficient(1e7, 0.3, 1e-5, 2e7, 0.4)
+    t = r.scene("sealed_element/column.json")["shake"]["duration"]
+    wanted = 10e3 * share * terzaghi(10.0, cv * t / 100.0, 10.0)  # 7479.4 Pa at T_v = 0.1
+    found = s.node["pore_pressure"][s.x[:, 1] < 1e-9].mean()
+    return ("sealed_element", f"base pore pressure of 20 elements at T_v 0.1: {found:.1f} Pa for {wanted:.1f} Pa",
+            abs(found / wanted - 1), 1e-4)
+
+
+def hydrostatic(r):
+    s = State(r.run("hydrostatic/fem.json") / "geostatic.h5")
+    wanted = 9810.0 * (10.0 - s.x[:, 1])
+    return "hydrostatic, k0", "pore pressure over its largest", np.abs(s.node["pore_pressure"] - wanted).max() / 98100.0, 1e-8
+
+
+def k0(r):
+    s = State(r.run("k0/fem.json") / "geostatic.h5")
+    y = s.centre[:, 1]
+    buoyant = np.where(y > 10, 870 * (15 - y), 870 * 5 + 1000 * (10 - y))
+    vertical = np.abs(-s.cell["effective_stress"][:, 1] / (9.81 * buoyant) - 1).max()
+    ratio = np.abs(s.cell["effective_stress"][:, 0] / s.cell["effective_stress"][:, 1] / 0.45 - 1).max()
+    return "hydrostatic, k0", "vertical effective stress and its K0", max(vertical, ratio), 1e-6
+
+
+def wave_absorption(r):
+    """The surface has twice the incident 0.1 m/s; a reflection by the base would come back after 2 H/V_s = 0.6 s."""
+    h = history(r.run("wave_absorption/fem.json"))
+    t, v = h["time_s"], h["surface_vx_m_s"]
+    return "wave_absorption", "reflected shear wave over the incident", np.abs(v[t > 1.0]).max() / 0.2, 0.01
+
+
+def wave_absorption_p(r):
+    """Down from the surface; a reflection by the base would come back after 2 H/V_p = 0.32 s."""
+    h = history(r.run("wave_absorption/p_wave.json"))
+    t, v = h["time_s"], h["surface_vy_m_s"]
+    incident = 10e3 / (1900 * 200 * math.sqrt(3.5))
+    return "wave_absorption", "reflected pressure wave over the incident", np.abs(v[t > 0.36]).max() / 2 / incident, 0.01
+
+
+def site_transfer(r):
+    """Surface over outcrop motion of a layer with stiffness proportional damping on elastic rock (Kelvin-Voigt:
+    G (1 + i w a1)), up to 20 Hz = 10 elements per wavelength; the error is taken over the largest amplification."""
+    folder = r.run("site_transfer/fem.json")
+    h = history(folder)
+    motion = np.genfromtxt(r.root / "cases/verification/site_transfer/motion.csv", delimiter=",", skip_header=1)
+    dt, n = h["time_s"][1] - h["time_s"][0], 1 << 15
+    outcrop = np.interp(h["time_s"], motion[:, 0], motion[:, 1], right=0.0)
+    f = np.fft.rfftfreq(n, dt)
+    found = np.abs(np.fft.rfft(h["surface_ax_m_s2"], n)) / np.abs(np.fft.rfft(outcrop, n))
+    band = (f >= 0.3) & (f <= 20.0)
+    a1 = 2 * 0.03 / (2 * math.pi * 5)
+    velocity = np.sqrt(76e6 * (1 + 2j * math.pi * f * a1) / 1900)
+    k, impedance = 2 * math.pi * f / velocity, 1900 * velocity / (2400 * 760)
+    wanted = 1 / np.abs(np.cos(k * 20) + 1j * impedance * np.sin(k * 20))
+    error = np.abs(found - wanted)[band].max() / wanted[band].max()
+    return "site_transfer", "amplification of the surface over the outcrop, over its largest", error, 0.02
+
+
+CHECKS = [patch_test, cantilever_timoshenko, cantilever_opensees, terzaghi_series, terzaghi_opensees, terzaghi_order_1,
+          terzaghi_order_2, sealed_element, sealed_column, hydrostatic, k0, wave_absorption, wave_absorption_p,
+          site_transfer]
+
+
+def main():
+    program, root, name, output = sys.argv[1:]
+    check = {c.__name__: c for c in CHECKS}[name]
+    start = time.time()
+    row, quantity, error, ceiling = check(Runner(program, root, output))
+    record = {"name": f"fem_{name}", "row": row, "quantity": quantity, "error": float(error), "ceiling": ceiling,
+              "seconds": time.time() - start}
+    folder = os.environ.get("TAILRUN_VERIFICATION_DIR")
+    if folder:
+        (pathlib.Path(folder) / f"fem_{name}.json").write_text(json.dumps(record, indent=1) + "\n")
+    holds = bool(error <= ceiling)
+    print(f"{'ok  ' if holds else 'FAIL'} {name}: {quantity}: error {error:.3g}, ceiling {ceiling:g}")
+    sys.exit(0 if holds else 1)
+
+
+if __name__ == "__main__":
+    main()
