@@ -11,8 +11,10 @@
 //   fem_stage mesh fem.json -o out/fem --size coarse   geometry -> out/fem/mesh.msh
 //   fem_stage geostatic fem.json --mesh out/fem/mesh.msh -o out/fem   -> geostatic.h5
 //   fem_stage shake fem.json --geostatic out/fem/geostatic.h5 -o out/fem  -> snapshots, histories, summary.json
+//   fem_stage shake fem.json --from out/fem/last_good_t07.1.h5 -o out/fem2   goes on from there
 //   fem_stage element test.json -o out.csv             one material point under a laboratory test's loading
 //   fem_stage calibrate target.json -o out/calibration parameters from a target strength
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <filesystem>
@@ -34,7 +36,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Arguments {
-  std::string case_file, size, folder = ".", mesh, geostatic;
+  std::string case_file, size, folder = ".", mesh, geostatic, from;
 };
 
 fs::path mesh_path(const Arguments& arguments) {
@@ -85,18 +87,33 @@ void make_geostatic(const Arguments& arguments) {
       1e-3 * report.largest_tension, report.seconds);
 }
 
-// geostatic.h5 and the motion -> snapshots, histories, summary.json.
+// A run goes on from `state`: its results must not overwrite those that led there.
+void check_restart(const Arguments& arguments, const FemCase& options, const State& state) {
+  const fs::path history = fs::path(arguments.folder) / "history.csv";
+  if (fs::exists(history))
+    throw InputError(history.string() + ": holds the results of a run; --from needs another folder (-o)");
+  if (state.time >= options.shake.duration)
+    throw InputError(fmt::format("{}: its time is {:g} s, but /shake/duration ends at {:g} s", arguments.from,
+                                 state.time, options.shake.duration));
+  if (!state.rotation.empty() && !options.shake.large_displacement)
+    throw InputError(arguments.from +
+                     ": was made with /shake/large_displacement, and its stresses are in turned frames; switch it on");
+}
+
+// geostatic.h5 (or any state file) and the motion -> snapshots, histories, summary.json.
 void make_shake(const Arguments& arguments, bool echo) {
   FemCase options = read_fem_case(arguments.case_file, arguments.size);
   const Motion motion = case_motion(options);
   if (echo) echo_options(arguments.case_file, options.echo);
   options.provenance.add_file(mesh_path(arguments));
   if (!options.shake.motion.empty()) options.provenance.add_file(options.shake.motion);
-  options.provenance.add_file(geostatic_path(arguments));
+  const fs::path start = arguments.from.empty() ? geostatic_path(arguments) : fs::path(arguments.from);
+  options.provenance.add_file(start);
   const Model model = build_model(options, mesh_path(arguments));
   MaterialPoints points = make_material_points(model);
   State state;
-  read_state(geostatic_path(arguments), model, state, points);
+  read_state(start, model, state, points);
+  if (!arguments.from.empty()) check_restart(arguments, options, state);
   const ShakeReport report = run_shake(model, points, state, motion, arguments.folder);
   const auto summary = shake_summary(model, motion, report);
   write_text_file((fs::path(arguments.folder) / "summary.json").string(), summary.dump(2) + "\n");
@@ -135,6 +152,7 @@ int main(int argc, char** argv) {
   shake->add_option("--mesh", arguments.mesh, "Mesh file (default: mesh.msh in the results' folder)");
   shake->add_option("--geostatic", arguments.geostatic,
                     "Geostatic state (default: geostatic.h5 in the results' folder)");
+  shake->add_option("--from", arguments.from, "Go on from this state (snapshot_t*.h5 or last_good_t*.h5)");
   shake->callback([&] { make_shake(arguments, true); });
 
   add_stage("run", "mesh, geostatic and shake")->callback([&] {

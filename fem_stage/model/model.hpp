@@ -54,6 +54,10 @@ struct State {
   std::vector<double> initial_stress;           // Pa, (M, 4)
   std::vector<double> initial_pressure;         // Pa, (N)
   std::vector<double> max_pore_pressure_ratio;  // 1, (M)
+  // Only with large displacement, and only once it has begun: what a restart needs.
+  std::vector<double> rotation;                // rad, (M): of the frames that the material's stress lives in
+  std::vector<double> turned_hourglass_force;  // N, (M, 2): hourglass forces turned with the element
+  double rigid_displacement = 0.0;             // m, along x: of a rigid base since the start of shaking
 };
 
 // Reads or makes the mesh and everything that depends on it. `mesh_file` overrides the case's. Throws InputError:

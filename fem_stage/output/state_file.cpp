@@ -125,6 +125,17 @@ void write_state(const std::filesystem::path& path, const Model& model, const St
                "rate of the pore pressure");
     file.write(restart + "/initial_pressure", std::span<const double>(state.initial_pressure), 0, "Pa",
                "geostatic pore pressure of the nodes");
+    if (!state.rotation.empty()) {
+      file.write(restart + "/rotation", std::span<const double>(state.rotation), 0, "rad",
+                 "turn of the frame that the material's stress lives in");
+      file.write(restart + "/turned_hourglass_force", std::span<const double>(state.turned_hourglass_force), 2, "N",
+                 "committed hourglass forces, turned with the element");
+    }
+    if (rigid_velocity != 0.0 || rigid_acceleration != 0.0 || rigid_displacement != 0.0) {
+      const double rigid[3] = {rigid_displacement, rigid_velocity, rigid_acceleration};
+      file.write(restart + "/rigid_base_motion", std::span<const double>(rigid), 0, "1",
+                 "displacement (m), velocity (m/s), acceleration (m/s2) of a rigid base along x, part of the nodes'");
+    }
   });
 }
 
@@ -160,6 +171,22 @@ void read_state(const std::filesystem::path& path, const Model& model, State& st
   state.initial_stress = snapshot.initial_effective_stress;
   state.initial_pressure = file.doubles(restart + "/initial_pressure", nodes, 1);
   state.max_pore_pressure_ratio = snapshot.max_excess_pore_pressure_ratio;
+  state.rotation.clear();
+  state.turned_hourglass_force.clear();
+  if (file.has(restart + "/rotation")) {
+    state.rotation = file.doubles(restart + "/rotation", count, 1);
+    state.turned_hourglass_force = file.doubles(restart + "/turned_hourglass_force", count, 2);
+  }
+  state.rigid_displacement = 0.0;
+  if (file.has(restart + "/rigid_base_motion")) {
+    const auto rigid = file.doubles(restart + "/rigid_base_motion", 3, 1);
+    for (std::size_t n = 0; n < nodes; ++n) {
+      state.displacement[2 * n] -= rigid[0];
+      state.velocity[2 * n] -= rigid[1];
+      state.acceleration[2 * n] -= rigid[2];
+    }
+    state.rigid_displacement = rigid[0];
+  }
 }
 
 }  // namespace tailrun::fem

@@ -172,6 +172,8 @@ void ElementForces::commit(MaterialPoints& points, State& state, std::span<const
     hourglass_committed_[2 * e] = hx * std::cos(spin) - hy * std::sin(spin);
     hourglass_committed_[2 * e + 1] = hx * std::sin(spin) + hy * std::cos(spin);
   }
+  state.rotation = rotation_;
+  state.turned_hourglass_force = hourglass_committed_;
   moved_ = build_sspquadup(model_.mesh, state.displacement, model_.thickness, model_.options->hourglass_shape,
                            model_.options->pressure_points);
 }
@@ -179,9 +181,11 @@ void ElementForces::commit(MaterialPoints& points, State& state, std::span<const
 void ElementForces::reset(const MaterialPoints& points, const State& state) {
   points.elastic_moduli(bulk_, shear_);
   hourglass_committed_ = state.hourglass_force;
-  if (large_)
-    moved_ = build_sspquadup(model_.mesh, state.displacement, model_.thickness, model_.options->hourglass_shape,
-                             model_.options->pressure_points);
+  if (!large_) return;
+  if (!state.rotation.empty()) rotation_ = state.rotation;
+  if (!state.turned_hourglass_force.empty()) hourglass_committed_ = state.turned_hourglass_force;
+  moved_ = build_sspquadup(model_.mesh, state.displacement, model_.thickness, model_.options->hourglass_shape,
+                           model_.options->pressure_points);
 }
 
 void ElementForces::matrix(std::size_t e, double mass_factor, double stiffness_factor, double storage_factor,

@@ -9,6 +9,7 @@
 
 #include "common/error.hpp"
 #include "common/progress.hpp"
+#include "fem_stage/boundary/free_field.hpp"
 #include "fem_stage/boundary/stage_freedoms.hpp"
 #include "fem_stage/output/state_file.hpp"
 
@@ -45,21 +46,24 @@ BaseMotion rigid_base_motion(const Model& model, const Motion& motion, double ti
 class Stepper {
  public:
   Stepper(const Model& model, MaterialPoints& points, State& state, ElementForces& forces, Newmark& newmark,
-          EnergyLedger& ledger)
+          EnergyLedger& ledger, std::function<void(double before)> accepted)
       : model_(model),
         points_(points),
         state_(state),
         forces_(forces),
         newmark_(newmark),
         ledger_(ledger),
+        accepted_(std::move(accepted)),
         last_load_(2 * model.nodes(), 0.0) {}
 
   std::string advance(double dt, int halvings_left) {
     recorder_.before(state_, last_load_);
+    const double before = state_.time;
     const StepResult result = newmark_.step(state_, points_, forces_, dt);
     if (result.converged) {
       recorder_.after(model_, state_, forces_, newmark_, ledger_);
       last_load_.assign(newmark_.last_load().begin(), newmark_.last_load().end());
+      accepted_(before);
       return {};
     }
     if (halvings_left == 0)
@@ -79,6 +83,7 @@ class Stepper {
   ElementForces& forces_;
   Newmark& newmark_;
   EnergyLedger& ledger_;
+  std::function<void(double)> accepted_;  // what else goes on with the time, from `before` to the state's
   EnergyRecorder recorder_;
   std::vector<double> last_load_;
 };
@@ -104,7 +109,10 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
 
   // 1. Freedoms, dashpots and loads of this stage.
   const Freedoms freedoms = shaking_freedoms(model);
-  const auto dashpots = base_dashpots(model);
+  const auto base_only = base_dashpots(model);
+  FreeField free_field(model, points, state);
+  auto dashpots = base_only;
+  dashpots.insert(dashpots.end(), free_field.dashpots().begin(), free_field.dashpots().end());
   const auto load = [&](double time, std::span<double> force) {
     const double base_acceleration = rigid ? motion.acceleration_at(time) : 0.0;
     for (std::size_t n = 0; n < model.nodes(); ++n) {
@@ -112,11 +120,12 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
       force[2 * n + 1] -= model.nodal_mass[n] * model.options->gravity;
     }
     const double velocity = rigid ? 0.0 : motion.velocity_at(time);
-    for (const auto& dashpot : dashpots)
+    for (const auto& dashpot : base_only)
       if (dashpot.freedom == freedom_ux)
         force[2 * static_cast<std::size_t>(dashpot.node)] += dashpot.coefficient * velocity;
     for (const auto& item : model.loads)
       if (item.in_shake) add_load(item, time, force);
+    free_field.add_forces(time, force);
   };
 
   // 2. The solver, its matrix made from the geostatic moduli.
@@ -126,6 +135,8 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
   ElementForces forces(model, damping, options.large_displacement);
   forces.reset(points, state);
   report.ledger.initial_hourglass_energy = forces.hourglass_energy(state);
+  for (std::size_t i = 0; i < 2 * model.nodes(); ++i)  // what a restart brings along
+    report.ledger.external_work += 0.5 * model.nodal_mass[i / 2] * state.velocity[i] * state.velocity[i];
   NewmarkOptions newmark_options{options.gamma,
                                  options.beta,
                                  options.theta,
@@ -134,7 +145,13 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
                                  options.refactor_above,
                                  options.acceleration_depth};
   Newmark newmark(model, freedoms, newmark_options, dashpots, load);
-  Stepper stepper(model, points, state, forces, newmark, report.ledger);
+  const auto accepted = [&](double before) {
+    if (rigid)
+      state.rigid_displacement +=
+          0.5 * (motion.velocity_at(before) + motion.velocity_at(state.time)) * (state.time - before);
+    free_field.observe(state);
+  };
+  Stepper stepper(model, points, state, forces, newmark, report.ledger, accepted);
   std::vector<double> first_load(2 * model.nodes(), 0.0);
   load(state.time, first_load);
   stepper.start_load(std::move(first_load));
@@ -144,11 +161,11 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
   QualitySeries quality(model, folder);
   Progress progress("shake", options.duration, "s");
   std::size_t next_snapshot = 0;
-  double next_record = 0.0, next_regular = output.snapshot_interval, rigid_displacement = 0.0;
+  double next_record = 0.0, next_regular = output.snapshot_interval;
   const double slack = 1e-6 * options.time_step;
   const auto write_outputs = [&] {
     const auto output_start = std::chrono::steady_clock::now();
-    const BaseMotion base = rigid_base_motion(model, motion, state.time, rigid_displacement);
+    const BaseMotion base = rigid_base_motion(model, motion, state.time, state.rigid_displacement);
     if (state.time >= next_record - slack) {
       history.record(state, base);
       quality.record(state, newmark.counts(), seconds_since(start));
@@ -170,16 +187,22 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
     }
     report.output_seconds += seconds_since(output_start);
   };
+  if (state.time > 0.0) {  // a restart: what lies before it has been written
+    while (next_snapshot < output.snapshots.size() && output.snapshots[next_snapshot] <= state.time + slack)
+      ++next_snapshot;
+    while (output.snapshot_interval > 0.0 && next_regular <= state.time + slack)
+      next_regular += output.snapshot_interval;
+    next_record = state.time;
+  }
   write_outputs();
   const long total_steps = std::lround(std::ceil(options.duration / options.time_step - 1e-9));
   for (long step = 1; step <= total_steps && report.failure.empty(); ++step) {
     const double before = state.time,
                  target = std::min(options.duration, options.time_step * static_cast<double>(step));
+    if (target <= before + slack) continue;  // a restart
     report.failure = stepper.advance(target - before, options.max_halvings);
     if (!report.failure.empty()) break;
     state.time = target;  // no drift from adding up steps
-    if (rigid)
-      rigid_displacement += 0.5 * (motion.velocity_at(before) + motion.velocity_at(target)) * (target - before);
     const auto ratio = excess_pore_pressure_ratio(model, state);
     for (std::size_t e = 0; e < model.count(); ++e)
       state.max_pore_pressure_ratio[e] = std::max(state.max_pore_pressure_ratio[e], ratio[e]);
@@ -192,7 +215,7 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
 
   // 4. What came of it.
   if (!report.failure.empty()) {
-    const BaseMotion base = rigid_base_motion(model, motion, state.time, rigid_displacement);
+    const BaseMotion base = rigid_base_motion(model, motion, state.time, state.rigid_displacement);
     const std::string name = fmt::format("last_good_t{:07.4f}.h5", state.time);
     write_state(folder / name, model, state, points, base.velocity, base.acceleration, base.displacement);
     report.snapshots.push_back(name);
