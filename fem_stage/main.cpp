@@ -12,6 +12,7 @@
 //   fem_stage geostatic fem.json --mesh out/fem/mesh.msh -o out/fem   -> geostatic.h5
 //   fem_stage shake fem.json --geostatic out/fem/geostatic.h5 -o out/fem  -> snapshots, histories, summary.json
 //   fem_stage shake fem.json --from out/fem/last_good_t07.1.h5 -o out/fem2   goes on from there
+//   fem_stage consolidate fem.json --mesh out/fem/mesh.msh --from out/fem/snapshot_t16.000.h5 -o out/consolidation
 //   fem_stage element test.json -o out.csv             one material point under a laboratory test's loading
 //   fem_stage calibrate target.json -o out/calibration parameters from a target strength
 #include <fmt/format.h>
@@ -88,11 +89,11 @@ void make_geostatic(const Arguments& arguments) {
 }
 
 // A run goes on from `state`: its results must not overwrite those that led there.
-void check_restart(const Arguments& arguments, const FemCase& options, const State& state) {
+void check_restart(const Arguments& arguments, const FemCase& options, const State& state, bool shaking) {
   const fs::path history = fs::path(arguments.folder) / "history.csv";
   if (fs::exists(history))
     throw InputError(history.string() + ": holds the results of a run; --from needs another folder (-o)");
-  if (state.time >= options.shake.duration)
+  if (shaking && state.time >= options.shake.duration)
     throw InputError(fmt::format("{}: its time is {:g} s, but /shake/duration ends at {:g} s", arguments.from,
                                  state.time, options.shake.duration));
   if (!state.rotation.empty() && !options.shake.large_displacement)
@@ -113,7 +114,7 @@ void make_shake(const Arguments& arguments, bool echo) {
   MaterialPoints points = make_material_points(model);
   State state;
   read_state(start, model, state, points);
-  if (!arguments.from.empty()) check_restart(arguments, options, state);
+  if (!arguments.from.empty()) check_restart(arguments, options, state, true);
   const ShakeReport report = run_shake(model, points, state, motion, arguments.folder);
   const auto summary = shake_summary(model, motion, report);
   write_text_file((fs::path(arguments.folder) / "summary.json").string(), summary.dump(2) + "\n");
@@ -126,6 +127,29 @@ void make_shake(const Arguments& arguments, bool echo) {
       report.end_time, report.quality.back().largest_displacement, report.quality.back().liquefied_depth,
       summary["min_scaled_jacobian"].get<double>(), summary["energy_J"]["residual_of_largest"].get<double>(),
       report.wall_seconds);
+}
+
+// A state after the shaking -> its pore pressures at rest again.
+void make_consolidation(const Arguments& arguments) {
+  FemCase options = read_fem_case(arguments.case_file, arguments.size);
+  echo_options(arguments.case_file, options.echo);
+  options.provenance.add_file(mesh_path(arguments));
+  options.provenance.add_file(arguments.from);
+  const Model model = build_model(options, mesh_path(arguments));
+  MaterialPoints points = make_material_points(model);
+  State state;
+  read_state(arguments.from, model, state, points);
+  check_restart(arguments, options, state, false);
+  const ConsolidationReport report = run_consolidation(model, points, state, arguments.folder);
+  const auto summary = consolidation_summary(report);
+  write_text_file((fs::path(arguments.folder) / "consolidation.json").string(), summary.dump(2) + "\n");
+  if (!report.failure.empty())
+    throw ComputationError(report.failure + "; the last good state is " +
+                           (fs::path(arguments.folder) / report.snapshots.back()).string());
+  spdlog::info(
+      "consolidation: {:.4g} s, largest r_u {:.3f} to {:.3f}, largest displacement {:.3f} m, {} steps, {:.1f} s",
+      report.end_time - report.start_time, report.first_ratio, report.last_ratio, report.settlement,
+      report.counts.steps, report.wall_seconds);
 }
 
 }  // namespace
@@ -154,6 +178,11 @@ int main(int argc, char** argv) {
                     "Geostatic state (default: geostatic.h5 in the results' folder)");
   shake->add_option("--from", arguments.from, "Go on from this state (snapshot_t*.h5 or last_good_t*.h5)");
   shake->callback([&] { make_shake(arguments, true); });
+
+  CLI::App* consolidate = add_stage("consolidate", "Drainage and settlement after the shaking");
+  consolidate->add_option("--mesh", arguments.mesh, "Mesh file (default: mesh.msh in the results' folder)");
+  consolidate->add_option("--from", arguments.from, "State after the shaking (snapshot_t*.h5)")->required();
+  consolidate->callback([&] { make_consolidation(arguments); });
 
   add_stage("run", "mesh, geostatic and shake")->callback([&] {
     make_mesh(arguments);

@@ -98,6 +98,23 @@ ShakeOptions read_shake(const CaseNode& node) {
   return out;
 }
 
+ConsolidationOptions read_consolidation(const CaseNode& node) {
+  ConsolidationOptions out;
+  out.duration = node.number_or("duration", "s", Range::positive(), out.duration);
+  out.first_step = node.number_or("first_step", "s", Range::positive(), out.first_step);
+  out.largest_step = node.number_or("largest_step", "s", Range::positive(), out.largest_step);
+  out.growth = node.number_or("growth", "1", Range::between(1.0, 10.0), out.growth);
+  out.ratio_limit = node.number_or("ratio_limit", "1", Range::non_negative(), out.ratio_limit);
+  out.rest_velocity = node.number_or("rest_velocity", "m/s", Range::positive(), out.rest_velocity);
+  out.post_shaking = node.boolean_or("post_shaking", out.post_shaking);
+  out.snapshots = node.numbers_or("snapshots", "s", Range::positive(), {});
+  const CaseNode solver = node.object_or_empty("solver");
+  out.tolerance = solver.number_or("tolerance", "1", Range::open(0.0, 0.1), out.tolerance);
+  out.max_iterations = static_cast<int>(solver.integer_or("max_iterations", 2, 1000, out.max_iterations));
+  out.max_halvings = static_cast<int>(solver.integer_or("max_halvings", 0, 30, out.max_halvings));
+  return out;
+}
+
 std::vector<NamedPoint> read_points(const CaseNode& node, const std::string& key) {
   std::vector<NamedPoint> points;
   const CaseNode parent = node.object_or_empty(key);
@@ -177,6 +194,7 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
     root.fail("boundaries/ponded_water", "the model is dry: give a phreatic_line, which meets the pond at its level");
   out.geostatic = read_geostatic(root.object_or_empty("geostatic"));
   out.shake = read_shake(root.object("shake"));
+  out.consolidation = read_consolidation(root.object_or_empty("consolidation"));
   out.output = read_output(root.object_or_empty("output"));
   file.finish();
   out.echo = file.echo();

@@ -60,6 +60,19 @@ struct ShakeOptions {
   bool large_displacement = false;
 };
 
+// After the shaking: quasi-static steps of growing length.
+struct ConsolidationOptions {
+  double duration = 86400.0;                                      // s
+  double first_step = 0.01, largest_step = 3600.0, growth = 1.5;  // s, s, 1
+  double ratio_limit = 0.05;    // r_u: done when no element has more; 0 = run to the end
+  double rest_velocity = 0.01;  // m/s: a state that moves faster gets a warning
+  double tolerance = 1e-5;      // residual force, of the weight
+  int max_iterations = 50;
+  int max_halvings = 10;          // of the first step
+  bool post_shaking = true;       // the PM4 models' reconsolidation moduli
+  std::vector<double> snapshots;  // s after its start
+};
+
 struct NamedPoint {
   std::string name;
   double x, y;  // m
@@ -93,6 +106,7 @@ struct FemCase {
   std::vector<LoadOptions> loads;
   GeostaticOptions geostatic;
   ShakeOptions shake;
+  ConsolidationOptions consolidation;
   OutputOptions output;
 };
 

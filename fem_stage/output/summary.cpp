@@ -31,6 +31,26 @@ Json geostatic_summary(const GeostaticReport& report) {
       {"largest_effective_tension_Pa", report.largest_tension}, {"seconds", report.seconds}};
 }
 
+Json consolidation_summary(const ConsolidationReport& report) {
+  Json out;
+  out["program"] = "fem_stage";
+  out["version"] = version();
+  out["finished"] = report.failure.empty();
+  if (!report.failure.empty()) out["failure"] = report.failure;
+  out["start_time_s"] = report.start_time;
+  out["end_time_s"] = report.end_time;
+  out["largest_excess_pore_pressure_ratio"] = {{"start", report.first_ratio}, {"end", report.last_ratio}};
+  out["largest_displacement_m"] = report.settlement;
+  out["velocity_left_out_m_s"] = report.start_velocity;
+  out["counts"] = {{"steps", report.counts.steps},
+                   {"iterations", report.counts.iterations},
+                   {"factorisations", report.counts.factorisations},
+                   {"step_halvings", report.counts.halvings}};
+  out["seconds"] = report.wall_seconds;
+  out["snapshots"] = report.snapshots;
+  return out;
+}
+
 Json shake_summary(const Model& model, const Motion& motion, const ShakeReport& report) {
   const auto optional = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   const SolverCounts& counts = report.counts;

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "fem_stage/stage/consolidate.hpp"
 #include "fem_stage/stage/geostatic.hpp"
 #include "fem_stage/stage/shake.hpp"
 
@@ -11,5 +12,6 @@ namespace tailrun::fem {
 nlohmann::ordered_json mesh_summary(const Mesh& mesh);
 nlohmann::ordered_json geostatic_summary(const GeostaticReport& report);
 nlohmann::ordered_json shake_summary(const Model& model, const Motion& motion, const ShakeReport& report);
+nlohmann::ordered_json consolidation_summary(const ConsolidationReport& report);
 
 }  // namespace tailrun::fem

@@ -244,9 +244,46 @@ def site_transfer(r):
     return "site_transfer", "amplification of the surface over the outcrop, over its largest", error, 0.02
 
 
+def pond(r):
+    s = State(r.run("hydrostatic/pond.json") / "geostatic.h5")
+    wanted = 9810.0 * (15.0 - s.x[:, 1])
+    water = np.abs(s.node["pore_pressure"] - wanted).max() / wanted.max()
+    soil = np.abs(-s.cell["effective_stress"][:, 1] / (9.81 * 900 * (10 - s.centre[:, 1])) - 1).max()
+    return "hydrostatic, k0", "pore pressure and vertical effective stress under a pond", max(water, soil), 1e-8
+
+
+def free_field(r):
+    """Surface, side and depth of a block move as the column beside it does."""
+    h = history(r.run("free_field/fem.json"))
+    error = max(np.abs(h[f"{a}_{v}_m_s"] - h[f"{b}_{v}_m_s"]).max() / np.abs(h[f"{b}_vx_m_s"]).max()
+                for a, b in (("side", "column"), ("middle", "column"), ("middle_depth", "column_depth"))
+                for v in ("vx", "vy"))
+    return "free_field", "velocity between side dashpots against the free field's, over its largest", error, 0.01
+
+
+def consolidation(r):
+    """The consolidate command from T_v 0.01 to 0.3 against the series that terzaghi_series uses."""
+    def short(scene):
+        scene["shake"]["duration"] = 817.5
+        scene["output"]["snapshots"] = [817.5]
+        scene["consolidation"] = {"duration": 24525 - 817.5, "first_step": 20, "largest_step": 400, "growth": 1.5,
+                                  "ratio_limit": 0}
+
+    folder = r.run("terzaghi/fem.json", short)
+    after = r.output / "consolidation"
+    subprocess.run([r.program, "consolidate", str(folder / "fem.json"), "--mesh", str(folder / "mesh.msh"), "--from",
+                    str(folder / "snapshot_t817.500.h5"), "-o", str(after), "--quiet", "--threads", "1"], check=True)
+    s = State(after / "consolidated.h5")
+    soil = r.scene("terzaghi/fem.json")["materials"]["soil"]
+    cv, share = consolidation_coefficient(soil["youngs_modulus"], soil["poisson"], 1e-6, 2.2e9, soil["porosity"])
+    wanted = share * terzaghi(10.0 - s.x[:, 1], cv * 24525 / 100.0, 10.0)
+    error = np.abs(s.node["pore_pressure"] / 100e3 - wanted).max()
+    return "terzaghi", "pore pressure after the consolidate command at T_v 0.3, over the load", error, 0.01
+
+
 CHECKS = [patch_test, cantilever_timoshenko, cantilever_opensees, terzaghi_series, terzaghi_opensees, terzaghi_order_1,
           terzaghi_order_2, sealed_element, sealed_column, hydrostatic, k0, wave_absorption, wave_absorption_p,
-          site_transfer]
+          site_transfer, pond, free_field, consolidation]
 
 
 def main():
