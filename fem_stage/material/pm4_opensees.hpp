@@ -3,9 +3,8 @@
 // fabric records frozen; bounding-surface clip and fabric records at commit.
 #pragma once
 
+#include "fem_stage/material/pm4_drift.hpp"
 #include "fem_stage/material/pm4_memory.hpp"
-#include "fem_stage/material/pm4_rates.hpp"
-#include "fem_stage/material/pm4_yield_cone.hpp"
 
 namespace tailrun::fem {
 
@@ -35,6 +34,8 @@ long integrate_piece(const Law& law, const Pm4PointConstants& point, const Plane
                      Pm4State& state) {
   using C = Pm4OpenSeesConstants;
   Pm4Variables& v = state.v;
+  v.p = std::max(v.p, stress_floor_fraction * point.p_min);
+  const Pm4Variables start = v;
   const Pm4Moduli moduli =
       moduli_of(law, point, law.surfaces(point, std::max(v.p, point.p_min), density_index), v.p, v.s, v.z_cum);
   double done = 0.0;
@@ -44,17 +45,23 @@ long integrate_piece(const Law& law, const Pm4PointConstants& point, const Plane
     const PlaneStrain sub{fraction * strain.volumetric, fraction * strain.deviator};
     const auto evaluate = [&](const Pm4Variables& at) {
       const Pm4Surfaces surfaces = law.surfaces(point, std::max(at.p, point.p_min), density_index);
-      return rates(law, point, state.memory, state.z_peak, at, surfaces, moduli, sub).change;
+      state.M_b = surfaces.M_b;
+      return rates(law, point, state.memory, state.z_peak, at, surfaces, moduli, sub);
     };
-    const Pm4Variables first = evaluate(v);
+    const auto give_up = [&] {  // the piece is left out
+      v = start;
+      return accepted;
+    };
+    const Pm4Variables first = evaluate(v).change;
     const Pm4Variables predicted = advanced(v, first);
     const bool smallest = fraction <= C::smallest;
     if (!(predicted.p > 0.0)) {
-      if (smallest) return accepted;  // gives up: the state of the last sub-step stands
+      if (smallest) return give_up();
       fraction = std::max(0.1 * fraction, C::smallest);
       continue;
     }
-    const Pm4Variables second = evaluate(predicted);
+    const Pm4Rates end = evaluate(predicted);
+    const Pm4Variables& second = end.change;
     Pm4Variables mean;
     mean.p = 0.5 * (first.p + second.p);
     mean.s = 0.5 * (first.s + second.s);
@@ -62,7 +69,7 @@ long integrate_piece(const Law& law, const Pm4PointConstants& point, const Plane
     mean.z = 0.5 * (first.z + second.z);
     Pm4Variables next = advanced(v, mean);
     if (!(next.p > 0.0)) {
-      if (smallest) return accepted;
+      if (smallest) return give_up();
       fraction = std::max(0.1 * fraction, C::smallest);
       continue;
     }
@@ -75,7 +82,9 @@ long integrate_piece(const Law& law, const Pm4PointConstants& point, const Plane
     }
     if (error > C::tolerance) next.z = v.z;  // OpenSees leaves the fabric alone in a sub-step accepted at the limit
     v = next;
-    if (!hold_stress_floor(law, point, v)) correct_drift(law, point, density_index, v);
+    if (!hold_stress_floor(law, point, v)) {
+      correct_drift(law, point, state.memory, state.z_peak, {density_index, end.L, moduli}, v, state.M_b);
+    }
     ++accepted;
     done += fraction;
     fraction = std::min(std::max(std::max(factor, 0.5) * fraction, C::smallest), 1.0 - done);
@@ -143,7 +152,9 @@ void finish_step_opensees(const Law& law, const Pm4PointConstants& point, const 
   const double index = law.index0 + law.index_slope * trial.volumetric_strain;
   v.z_cum += sqrt_half * norm(v.z - committed.v.z);
   trial.z_peak = std::max(trial.z_peak, sqrt_half * norm(v.z));
-  const Pm4Surfaces surfaces = law.surfaces(point, std::max(v.p, point.p_min), index);
+  Pm4Surfaces surfaces = law.surfaces(point, std::max(v.p, point.p_min), index);
+  // OpenSees clips at the M_b that it evaluated last, which in an elastic step is an earlier step's.
+  if (trial.M_b > 0.0) surfaces.M_b = trial.M_b;
   // OpenSees' PM4Silt clips only where the normal stresses are equal (to 1e-5 kPa).
   if (!Law::clips_only_in_simple_shear || std::fabs(v.s.d) < 5e-8 * law.atmospheric_pressure) {
     clip_to_bounding_surface(law, point, surfaces.M_b, v);

@@ -36,6 +36,7 @@ struct Pm4State {
   double volumetric_strain = 0.0;  // since the void ratio was last set, compression positive
   double G = 0.0;                  // elastic moduli at this state
   double K = 0.0;
+  double M_b = 0.0;              // bounding ratio of the last evaluation (compatible mode); 0 before the first
   double substep_strain = 1e-5;  // strain of the last sub-step that the error control accepted; the next one's guess
 };
 

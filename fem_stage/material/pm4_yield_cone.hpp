@@ -81,39 +81,4 @@ inline bool clip_to_bounding_surface(const Pm4Law& law, const Pm4PointConstants&
   return true;
 }
 
-// Drift correction of the OpenSees-compatible mode: alpha along b (towards the bounding surface) until f <= tol, moving
-// the stress along the yield normal where alpha cannot help, and `recentre_cone` when neither converges.
-template <class Law>
-inline void correct_drift(const Law& law, const Pm4PointConstants& point, double density_index, Pm4Variables& v) {
-  double f = yield_function(law.m, v.p, v.s, v.alpha);
-  for (int iteration = 0; iteration < 25; ++iteration) {
-    if (f <= law.tolerance) return;
-    const double p_star = std::max(v.p, point.p_min);
-    const Deviator n = cone_normal(v.p, v.s, v.alpha);
-    const Pm4Surfaces surfaces = law.surfaces(point, p_star, density_index);
-    const Deviator b = sqrt_half * (surfaces.M_b - law.m) * n - v.alpha;
-    const double B = contract(b, n);
-    if (std::fabs(B) > 1e-10) {
-      const Deviator moved = v.alpha + (f / (p_star * B)) * b;
-      const double f_moved = yield_function(law.m, v.p, v.s, moved);
-      if (std::fabs(f_moved) < std::fabs(f)) {
-        v.alpha = moved;
-        f = f_moved;
-        continue;
-      }
-    }
-    // g = n - (n:r) I/2 has g:g = 1 + (n:r)^2/2, and s - p alpha moves by -f n, p by +f (n:r)/2 over g:g.
-    const double n_r = contract(n, v.s) / v.p;
-    const double length = f / (1.0 + 0.5 * n_r * n_r);
-    const double p_moved = v.p + 0.5 * n_r * length;
-    const Deviator s_moved = v.s - length * n;
-    const double f_moved = yield_function(law.m, p_moved, s_moved, v.alpha);
-    if (!(std::fabs(f_moved) < std::fabs(f)) || p_moved <= 0.0) break;
-    v.p = p_moved;
-    v.s = s_moved;
-    f = f_moved;
-  }
-  if (f > law.tolerance) recentre_cone(law, v);
-}
-
 }  // namespace tailrun::fem

@@ -32,6 +32,15 @@ TEST_CASE("PM4Silt: monotonic undrained shear ends at S_u,cs") {
   }
 }
 
+// Weak silt shears at its bounding surface, where only the stress can take up the yield correction.
+TEST_CASE("PM4Silt: the compatible mode's strength is OpenSees' whatever the strain step") {
+  for (const double step : {5e-6, 5e-5}) {
+    auto point = drive(silt(0.10, true), 50e3, 100e3);
+    for (double strain = 0.0; strain < 0.1; strain += step) point.step(0.0, 0.0, step);
+    CHECK(point.xy() == doctest::Approx(10.05e3).epsilon(2e-3));
+  }
+}
+
 TEST_CASE("PM4Silt: an absolute strength wins over the ratio, F_su reduces it") {
   Pm4SiltParameters p = silt(0.25, false);
   p.strength = 40e3;
