@@ -49,13 +49,20 @@ MeshOptions read_mesh(const CaseNode& node, const std::string& size) {
   for (const auto& [name, parameters] : node.object_or_empty("sizes").members()) {
     sizes.emplace(name, parameters);
     for (const auto& key : parameters.keys()) {
-      const double value = parameters.number(key, "1", Range::any());
+      if (mesh.rectangle && key != "refine") parameters.fail(key, "a rectangle's sizes have one parameter, 'refine'");
+      const double value = mesh.rectangle ? static_cast<double>(parameters.integer(key, 1, 64))
+                                          : parameters.number(key, "1", Range::any());
       if (name == size || (size.empty() && name == "default")) mesh.parameters[key] = value;
     }
   }
   if (!size.empty() && size != "default" && !sizes.contains(size))
     throw InputError(fmt::format("--size {}: {} has no such entry in /mesh/sizes.{} It has: {}", size, "the case",
                                  did_you_mean(size, keys_of(sizes)), joined(keys_of(sizes))));
+  if (mesh.rectangle && mesh.parameters.contains("refine")) {
+    const int refine = static_cast<int>(mesh.parameters["refine"]);
+    mesh.rectangle->columns *= refine;
+    for (auto& layer : mesh.rectangle->layers) layer.rows *= refine;
+  }
   return mesh;
 }
 
