@@ -20,8 +20,8 @@ struct Pm4DriftState {
   Pm4Moduli moduli;
 };
 
-// Corrects `v` to f <= tolerance; where that does not converge, alpha alone is moved. `M_b`: the bounding ratio last
-// evaluated.
+// Corrects `v` to f <= tolerance; where that does not converge, `v` stays outside the cone for the next sub-step to
+// bring back. `M_b`: the bounding ratio last evaluated.
 template <class Law>
 void correct_drift(const Law& law, const Pm4PointConstants& point, const Pm4Memory& memory, double z_peak,
                    const Pm4DriftState& drift, Pm4Variables& v, double& M_b) {
@@ -60,7 +60,6 @@ void correct_drift(const Law& law, const Pm4PointConstants& point, const Pm4Memo
     p = std::max(v.p, point.p_min);
   }
   v = start;
-  recentre_cone(law, v);
 }
 
 }  // namespace tailrun::fem

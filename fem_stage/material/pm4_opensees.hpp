@@ -109,8 +109,7 @@ long integrate_opensees(const Law& law, const Pm4PointConstants& point, const Pm
   const double tol = law.tolerance;
   trial.volumetric_strain += strain.volumetric;
   if (yield_function(law.m, elastic_trial.p, elastic_trial.s, v.alpha) <= tol) {
-    v = elastic_trial;
-    hold_stress_floor(law, point, v);
+    v = elastic_trial;  // below the floor, too: the next plastic piece raises it
     return 1;
   }
 
