@@ -56,11 +56,11 @@ def plot_stages(plt, paths, view, output):
     style.save(figure, output)
 
 
-def plot_front(plt, front, paths, start, output):
+def plot_front(plt, front, start, output):
     figure, axes = plt.subplots(3, 1, figsize=(9, 8), sharex=True)
     t = start + front["time_s"]
     axes[0].plot(t, front["robust_front_m"], "C0", label="front without stragglers (front_quantile)")
-    axes[0].plot(*runout.flow_front(paths), "C3", label="of what has moved more than 1 m since the hand-over")
+    axes[0].plot(t, front["flow_front_m"], "C3", label="of what has moved more than flow_distance since the hand-over")
     axes[0].plot(t, front["front_m"], color="0.6", lw=0.8, label="outermost particle")
     axes[0].set(ylabel="front, x (m)", title="runout")
     axes[0].legend(loc="best")
@@ -123,7 +123,7 @@ def main():
     plot_stages(plt, paths, view, arguments.output / "runout.png")
     front = chain.series(arguments.folder / "front.csv")
     if front is not None:
-        plot_front(plt, front, paths, first.time, arguments.output / "runout_front.png")
+        plot_front(plt, front, first.time, arguments.output / "runout_front.png")
     ledger = chain.series(arguments.folder / "ledger.csv")
     if ledger is not None:
         plot_energy(plt, ledger, first.time, arguments.output / "energy.png")

@@ -45,8 +45,10 @@ def collect(results, phase):
             ("MPM", "particles", str(mpm.get("particles", "-")), ""),
             ("MPM", "time simulated", show(mpm.get("simulated_time_s"), 1), "s"),
             ("MPM", "ended", mpm.get("stop_reason", "-"), ""),
-            ("MPM", "front at the end, x", show(mpm.get("robust_front_position_m"), 1), "m"),
-            ("MPM", "runout (advance of the front)", show(mpm.get("runout_m"), 1), "m"),
+            ("MPM", "front of all soil, x", show(mpm.get("robust_front_position_m"), 1), "m"),
+            ("MPM", "front of what flowed, x", show(mpm.get("flow_front_position_m"), 1), "m"),
+            ("MPM", "mass that flowed, per m of dam", show(mpm.get("flowed_mass_kg", 0.0) / 1e3, 0), "t"),
+            ("MPM", "largest displacement", show(mpm.get("largest_displacement_m"), 1), "m"),
             ("MPM", "energy balance's residual", f"{mpm.get('energy', {}).get('residual_ratio', 0.0):.1e}", "1"),
             ("MPM", "wall time", show(mpm.get("wall_seconds", {}).get("total"), 1), "s"),
         ]

@@ -69,18 +69,3 @@ def draw_materials(figure, axis, particles, view):
 def first_and_last(folder):
     paths = chain.frames(folder)
     return chain.Particles(paths[0]), chain.Particles(paths[-1]), paths
-
-
-def flow_front(paths, moved=1.0):
-    """Times (s) and the largest x (m) of what has moved more than `moved` metres since the hand-over: the front of the
-    flow itself, which may still lie above a part of the dam that stands."""
-    first = chain.Particles(paths[0])
-    times, fronts = [], []
-    for path in paths:
-        particles = chain.Particles(path)
-        extra = particles.data["displacement"] - displacement_at_transfer(first, particles)
-        shown = np.hypot(extra[:, 0], extra[:, 1]) > moved
-        if shown.any():
-            times.append(particles.time)
-            fronts.append(np.quantile(particles.position[shown, 0], 0.999))
-    return np.array(times), np.array(fronts)

@@ -11,7 +11,7 @@
 namespace tailrun::mpm {
 
 template <int Dim>
-FrontSeries<Dim>::FrontSeries(const Scene& scene) : output_(scene.output) {
+FrontSeries<Dim>::FrontSeries(const Scene& scene) : output_(scene.output), start_(scene.particles.position) {
   bool any = false;
   for (const auto& m : scene.materials) {
     moving_.push_back(m.model != Model::linear_elastic && m.model != Model::rigid);
@@ -49,6 +49,22 @@ FrontSeries<Dim>::FrontSeries(const Scene& scene) : output_(scene.output) {
   }
 }
 
+// Position ahead of which only 1 - quantile of `mass` lies.
+template <int Dim>
+double FrontSeries<Dim>::quantile_front(Ahead& particles, double mass) const {
+  if (particles.empty()) return std::nan("");
+  // Only the leading part has to be in order.
+  const auto ahead = [](const auto& a, const auto& b) { return a.first > b.first; };
+  const double beyond = 1.0 - output_.front_quantile;
+  const std::size_t some =
+      std::min(particles.size(), 8 + static_cast<std::size_t>(4.0 * beyond * static_cast<double>(particles.size())));
+  std::partial_sort(particles.begin(), particles.begin() + static_cast<std::ptrdiff_t>(some), particles.end(), ahead);
+  double sum = 0.0;
+  std::size_t k = 0;
+  while (k + 1 < some && sum + particles[k].second < beyond * mass) sum += particles[k++].second;
+  return output_.front_sign * particles[k].first;
+}
+
 template <int Dim>
 const FrontRow& FrontSeries<Dim>::sample(double time, const Particles<Dim>& P) {
   FrontRow row;
@@ -56,6 +72,7 @@ const FrontRow& FrontSeries<Dim>::sample(double time, const Particles<Dim>& P) {
   row.points.assign(2 * followed_.size(), std::nan(""));
   row.top = -std::numeric_limits<double>::infinity();
   scratch_.clear();
+  flowed_.clear();
   double mass = 0.0, energy = 0.0, fastest = 0.0;
   for (std::size_t p = 0; p < P.count(); ++p) {
     for (std::size_t k = 0; k < followed_.size(); ++k)
@@ -73,20 +90,21 @@ const FrontRow& FrontSeries<Dim>::sample(double time, const Particles<Dim>& P) {
     row.centre_y += P.mass[p] * P.position[1][p];
     row.top = std::max(row.top, P.position[1][p]);
     scratch_.emplace_back(output_.front_sign * P.position[output_.front_axis][p], P.mass[p]);
+    double moved2 = 0.0;
+    for (int d = 0; d < Dim; ++d) {
+      const double u =
+          P.position[d][p] - start_[3 * static_cast<std::size_t>(P.identity[p]) + static_cast<std::size_t>(d)];
+      moved2 += u * u;
+    }
+    if (moved2 > output_.flow_distance * output_.flow_distance) {
+      flowed_.push_back(scratch_.back());
+      row.flowed_mass += P.mass[p];
+    }
   }
+  row.flow_front = quantile_front(flowed_, row.flowed_mass);
   if (!scratch_.empty()) {
-    // Only the leading part has to be in order to find the quantile of mass.
-    const auto ahead = [](const auto& a, const auto& b) { return a.first > b.first; };
-    const std::size_t some = std::min(
-        scratch_.size(),
-        8 + static_cast<std::size_t>(4.0 * (1.0 - output_.front_quantile) * static_cast<double>(scratch_.size())));
-    std::partial_sort(scratch_.begin(), scratch_.begin() + static_cast<std::ptrdiff_t>(some), scratch_.end(), ahead);
-    double sum = 0.0;
-    std::size_t k = 0;
-    while (k + 1 < some && sum + scratch_[k].second < (1.0 - output_.front_quantile) * mass)
-      sum += scratch_[k++].second;
+    row.robust_front = quantile_front(scratch_, mass);
     row.front = output_.front_sign * scratch_.front().first;
-    row.robust_front = output_.front_sign * scratch_[k].first;
     row.centre_x /= mass;
     row.centre_y /= mass;
     row.rms_speed = std::sqrt(energy / mass);
@@ -111,12 +129,15 @@ bool FrontSeries<Dim>::at_rest(const RestCriterion& rest) const {
 
 template <int Dim>
 void FrontSeries<Dim>::write(const std::filesystem::path& path) const {
-  std::string text = "time_s,front_m,robust_front_m,top_m,centre_x_m,centre_y_m,rms_speed_m_s,maximum_speed_m_s";
+  std::string text =
+      "time_s,front_m,robust_front_m,top_m,centre_x_m,centre_y_m,rms_speed_m_s,maximum_speed_m_s,flow_front_m,flowed_"
+      "mass_kg";
   for (const auto& p : output_.points) text += fmt::format(",{0}_x_m,{0}_y_m", p.name);
   text += "\n";
   for (const auto& r : rows_) {
-    text += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", r.time, r.front, r.robust_front,
-                        r.top, r.centre_x, r.centre_y, r.rms_speed, r.maximum_speed);
+    text += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", r.time, r.front,
+                        r.robust_front, r.top, r.centre_x, r.centre_y, r.rms_speed, r.maximum_speed, r.flow_front,
+                        r.flowed_mass);
     for (const double x : r.points) text += fmt::format(",{:.9g}", x);
     text += "\n";
   }

@@ -14,6 +14,8 @@ struct FrontRow {
   double time = 0.0;                      // s
   double front = 0.0;                     // m, outermost moving particle
   double robust_front = 0.0;              // m, ahead of which only 1 - quantile of the moving mass lies
+  double flow_front = 0.0;                // m, the same for the mass that has flowed (OutputOptions::flow_distance)
+  double flowed_mass = 0.0;               // kg
   double top = 0.0;                       // m, highest moving particle
   double centre_x = 0.0, centre_y = 0.0;  // m, of the moving mass
   double rms_speed = 0.0;                 // m/s, of the moving mass
@@ -37,7 +39,10 @@ class FrontSeries {
   OutputOptions output_;
   std::vector<std::int32_t> followed_;  // identities
   std::vector<FrontRow> rows_;
-  std::vector<std::pair<double, double>> scratch_;
+  std::vector<double> start_;                            // m, (particles, 3), by identity
+  using Ahead = std::vector<std::pair<double, double>>;  // coordinate along the front's direction, mass
+  double quantile_front(Ahead& particles, double mass) const;
+  Ahead scratch_, flowed_;
 };
 
 }  // namespace tailrun::mpm

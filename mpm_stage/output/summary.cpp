@@ -4,6 +4,7 @@
 #include <omp.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/provenance.hpp"
@@ -34,8 +35,9 @@ Json features(const Scene& scene) {
   const SolverOptions& o = scene.solver;
   chosen.push_back(fmt::format("{}-D kernels", scene.dimension));
   chosen.push_back(shape_name(o.shape) + " shape functions");
-  chosen.push_back(o.transfer == TransferName::apic ? "APIC transfer"
-                                                    : fmt::format("FLIP/PIC transfer, FLIP share {}", o.flip_share));
+  chosen.push_back(o.transfer == TransferName::apic    ? "APIC transfer"
+                   : o.transfer == TransferName::aflip ? fmt::format("AFLIP transfer, damping {}", o.transfer_damping)
+                                                       : fmt::format("FLIP/PIC transfer, FLIP share {}", o.flip_share));
   bool pore = false, undrained = false, softening = false, rate = false, cutoff = false, average = false;
   for (const auto& m : scene.materials) {
     if (m.model == Model::rigid) continue;
@@ -58,6 +60,21 @@ Json features(const Scene& scene) {
   say(scene.base.shaken(), "base shaking");
   say(o.local_damping > 0.0, "local damping");
   return {{"chosen", chosen}, {"skipped", skipped}};
+}
+
+// m, since the start of this run.
+template <int Dim>
+double largest_displacement(const Scene& scene, const Particles<Dim>& P) {
+  double most = 0.0;
+  for (std::size_t p = 0; p < P.count(); ++p) {
+    double squares = 0.0;
+    for (std::size_t d = 0; d < Dim; ++d) {
+      const double u = P.position[d][p] - scene.particles.position[3 * static_cast<std::size_t>(P.identity[p]) + d];
+      squares += u * u;
+    }
+    most = std::max(most, squares);
+  }
+  return std::sqrt(most);
 }
 
 }  // namespace
@@ -91,6 +108,9 @@ Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& reco
   j["robust_front_position_m"] = f1.robust_front;
   j["runout_m"] = scene.output.front_sign * (f1.robust_front - f0.robust_front);
   j["largest_runout_m"] = scene.output.front_sign * (outermost - f0.robust_front);
+  if (f1.flowed_mass > 0.0) j["flow_front_position_m"] = f1.flow_front;
+  j["flowed_mass_kg"] = f1.flowed_mass;
+  j["largest_displacement_m"] = largest_displacement(scene, solver.particles());
   j["top_m"] = f1.top;
   j["final_rms_speed_m_s"] = f1.rms_speed;
   j["final_maximum_speed_m_s"] = f1.maximum_speed;

@@ -59,7 +59,8 @@ Material read_material(const std::string& name, const CaseNode& node, double res
             : model == "newtonian_fluid" ? Model::newtonian_fluid
                                          : Model::rigid;
   if (m.model == Model::rigid) return m;
-  m.average_volumetric_strain = node.boolean_or("average_volumetric_strain", m.model != Model::linear_elastic);
+  m.average_volumetric_strain =
+      node.boolean_or("average_volumetric_strain", m.model == Model::tresca || m.model == Model::newtonian_fluid);
   if (m.model == Model::newtonian_fluid) {
     m.density = node.number("density", "kg/m3", Range::positive());
     m.bulk_modulus = node.number("bulk_modulus", "Pa", Range::positive());

@@ -32,12 +32,11 @@ struct TrackedPoint {
 struct OutputOptions {
   double frame_interval = 1.0;    // s of simulated time; 0: no frames
   double series_interval = 0.05;  // s
-  bool compress = true;
   int front_axis = 0;             // coordinate along which the front runs
   double front_sign = 1.0;        // +1: towards larger coordinates
   double front_quantile = 0.999;  // 1, share of the moving mass behind the robust front
+  double flow_distance = 1.0;     // m, what has moved farther than this counts as flowed
   std::vector<TrackedPoint> points;
-  std::vector<std::string> fields;  // extra fields of the frames
 };
 
 struct BaseMotion {

@@ -54,8 +54,10 @@ void read_scheme(const CaseNode& root, Scene& scene) {
             : shape == "quadratic" ? ShapeName::quadratic
             : shape == "cubic"     ? ShapeName::cubic
                                    : ShapeName::gimp;
-  o.transfer =
-      scheme.choice_or("transfer", {"apic", "flip"}, "apic") == "apic" ? TransferName::apic : TransferName::flip;
+  const std::string transfer = scheme.choice_or("transfer", {"apic", "aflip", "flip"}, "aflip");
+  o.transfer = transfer == "apic" ? TransferName::apic : transfer == "aflip" ? TransferName::aflip : TransferName::flip;
+  if (o.transfer == TransferName::aflip)
+    o.transfer_damping = scheme.number_or("transfer_damping", "1", Range::between(0.0, 10.0), o.transfer_damping);
   if (o.transfer == TransferName::flip)
     o.flip_share = scheme.number_or("flip_share", "1", Range::between(0.0, 1.0), 0.99);
   o.volumetric_average = scheme.boolean_or("volumetric_average", true);
@@ -87,6 +89,7 @@ void read_output(const CaseNode& root, Scene& scene) {
   o.front_sign = direction[0] == '+' ? 1.0 : -1.0;
   o.front_axis = direction[1] - 'x';
   if (o.front_axis >= scene.dimension) node.fail("front_direction", "z needs dimension 3");
+  o.flow_distance = node.number_or("flow_distance", "m", Range::positive(), o.flow_distance);
   o.front_quantile = node.number_or("front_quantile", "1", Range::between(0.5, 1.0), o.front_quantile);
   for (const CaseNode& point : node.list_or_empty("points")) {
     const auto x = point.numbers("position", "m", Range::any(), 2);

@@ -29,8 +29,8 @@
 
 namespace tailrun::mpm {
 
-// Split keeps momentum and forces apart (FLIP and damping need both). Flip: FLIP/PIC blend, else APIC.
-template <int Dim, class Shape, bool Split, bool Flip>
+// Split keeps momentum and forces apart (FLIP and damping need both).
+template <int Dim, class Shape, bool Split, TransferName Transfer>
 class ExplicitSolver final : public Solver<Dim> {
  public:
   ExplicitSolver(const SolverOptions& options, double cell_size, std::array<double, Dim> origin,
@@ -72,6 +72,7 @@ class ExplicitSolver final : public Solver<Dim> {
       for (const Run& run : grid_.runs(b))
         for (std::size_t p = run.begin; p < run.end; ++p)
           fastest = std::max(fastest, wave_speed_[run.material] + std::sqrt(speed_squared(p)));
+    fastest_wave_ = fastest;
     next_dt_ = std::min({options_.courant * h_ / fastest, options_.maximum_step, viscous_limit_, limit});
     particles_to_grid();
   }
@@ -142,6 +143,15 @@ class ExplicitSolver final : public Solver<Dim> {
     return s;
   }
 
+  // Share of the way to the average that the mean stress goes in a step.
+  double relaxation(int material, double dt) const {
+    const auto m = static_cast<std::size_t>(material);
+    return constants_[m].relaxed ? std::min(0.5, options_.mean_stress_relaxation * dt * h1_ * wave_speed_[m]) : 0.0;
+  }
+  double flip_share(double dt) const {
+    return Transfer == TransferName::aflip ? 1.0 - std::min(1.0, options_.transfer_damping * dt * h1_ * fastest_wave_)
+                                           : options_.flip_share;
+  }
   void limit_volumes();
   void sort();
   void update_grid(double dt, const std::array<double, Dim>& body, const std::array<double, Dim>& inertial);
@@ -202,14 +212,20 @@ std::unique_ptr<Solver<Dim>> make_solver_of_shape(const SolverOptions& options, 
                                                   std::array<double, Dim> origin, Particles<Dim> particles,
                                                   const std::vector<Material>& materials, const Terrain& terrain,
                                                   const Walls<Dim>& walls) {
-  if (options.transfer == TransferName::flip)
-    return std::make_unique<ExplicitSolver<Dim, Shape, true, true>>(options, cell_size, origin, std::move(particles),
-                                                                    materials, terrain, walls);
-  if (options.local_damping > 0.0)
-    return std::make_unique<ExplicitSolver<Dim, Shape, true, false>>(options, cell_size, origin, std::move(particles),
-                                                                     materials, terrain, walls);
-  return std::make_unique<ExplicitSolver<Dim, Shape, false, false>>(options, cell_size, origin, std::move(particles),
-                                                                    materials, terrain, walls);
+  const auto make = [&]<bool Split, TransferName Transfer>() -> std::unique_ptr<Solver<Dim>> {
+    return std::make_unique<ExplicitSolver<Dim, Shape, Split, Transfer>>(
+        options, cell_size, origin, std::move(particles), materials, terrain, walls);
+  };
+  switch (options.transfer) {
+    case TransferName::flip:
+      return make.template operator()<true, TransferName::flip>();
+    case TransferName::aflip:
+      return make.template operator()<true, TransferName::aflip>();
+    case TransferName::apic:
+      break;
+  }
+  return options.local_damping > 0.0 ? make.template operator()<true, TransferName::apic>()
+                                     : make.template operator()<false, TransferName::apic>();
 }
 
 #define TAILRUN_MPM_INSTANTIATE(Dim, Shape)                                                                \

@@ -1,22 +1,26 @@
 // The phases of the explicit step, in the order in which explicit_solver.hpp runs them; included there.
+//
+// Blocks hold very different numbers of particles, so threads take them a few at a time; what a block computes does not
+// depend on who computes it.
 #pragma once
 
 #include "mpm_stage/step/explicit_solver.hpp"
 
 namespace tailrun::mpm {
 
-// The grains' volume is what counts: at most twice that of the material's loosest particle at the start.
-template <int Dim, class Shape, bool Split, bool Flip>
-void ExplicitSolver<Dim, Shape, Split, Flip>::limit_volumes() {
+// The grains' volume is what counts: at most a quarter more than that of the material's loosest particle at the start,
+// about what lies between a loose sand's void ratio and the loosest possible (0.8 and 1.2).
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::limit_volumes() {
   std::vector<double> loosest(constants_.size(), 0.0);
   for (std::size_t p = 0; p < P_.count(); ++p)
     loosest[P_.material[p]] = std::max(loosest[P_.material[p]], P_.volume[p] / P_.mass[p]);
   for (std::size_t m = 0; m < constants_.size(); ++m)
-    if (loosest[m] > 0.0) constants_[m].largest_specific_volume = 2.0 * loosest[m];
+    if (loosest[m] > 0.0) constants_[m].largest_specific_volume = 1.25 * loosest[m];
 }
 
-template <int Dim, class Shape, bool Split, bool Flip>
-void ExplicitSolver<Dim, Shape, Split, Flip>::sort() {
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::sort() {
   const auto since = Clock::now();
   std::vector<std::uint8_t> keep;
   if (leaving_) {
@@ -75,9 +79,9 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::sort() {
   add_time(seconds_.sort, since);
 }
 
-template <int Dim, class Shape, bool Split, bool Flip>
-void ExplicitSolver<Dim, Shape, Split, Flip>::update_grid(double dt, const std::array<double, Dim>& body,
-                                                          const std::array<double, Dim>& inertial) {
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const std::array<double, Dim>& body,
+                                                              const std::array<double, Dim>& inertial) {
   const auto since = Clock::now();
   constexpr int B = Block<Dim>::cells;
   bool shaken = false;
@@ -85,7 +89,7 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::update_grid(double dt, const std::
   // Nodes at mirrors need their images' sums, so those are complete before any velocity is made.
   const bool mirrored = mirrors_.any();
   if (mirrored) {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(dynamic, 4)
     for (std::size_t a = 0; a < grid_.active(); ++a) {
       gather_tiles<Dim, Shape>(grid_, a, tiles_.data(), sums_.data() + a * block_nodes);
       if constexpr (Split) gather_tiles<Dim, Shape>(grid_, a, forces_.data(), force_sums_.data() + a * block_nodes);
@@ -93,7 +97,7 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::update_grid(double dt, const std::
     mirrors_.fold(sums_.data());
     if constexpr (Split) mirrors_.fold(force_sums_.data());
   }
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t a = 0; a < grid_.active(); ++a) {
     Vec4 own_sum[block_nodes], own_force[Split ? block_nodes : 1];
     const Vec4 *sum = own_sum, *force = own_force;
@@ -165,13 +169,13 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::update_grid(double dt, const std::
 }
 
 // The ground's friction on the nodes' velocities.
-template <int Dim, class Shape, bool Split, bool Flip>
-void ExplicitSolver<Dim, Shape, Split, Flip>::rub_ground() {
-#pragma omp parallel for schedule(static)
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_ground() {
+#pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t a = 0; a < grid_.active(); ++a)
     if (ground_.of_block(a))
       for (int n = 0; n < block_nodes; ++n) spread_[a * block_nodes + n] = spread_of(ground_, grip_, a, n);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t a = 0; a < grid_.active(); ++a) {
     if (!ground_.of_block(a)) continue;
     for (int n = 0; n < block_nodes; ++n) {
@@ -190,18 +194,20 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::rub_ground() {
   }
 }
 
-template <int Dim, class Shape, bool Split, bool Flip>
-void ExplicitSolver<Dim, Shape, Split, Flip>::gather(double dt, StepReport& report) {
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& report) {
   const auto since = Clock::now();
-  const GridToParticles s{dt, h1_, options_.flip_share};
-#pragma omp parallel for schedule(static)
+  constexpr bool Flip = Transfer != TransferName::apic, Affine = Transfer != TransferName::flip;
+  const GridToParticles s{dt, h1_, flip_share(dt)};
+#pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t b = 0; b < grid_.occupied(); ++b) {
     Vec4 tile[tile_nodes], change[Flip ? tile_nodes : 1];
     load_tile<Dim, Shape>(grid_, b, velocity_.data(), tile);
     if constexpr (Flip) load_tile<Dim, Shape>(grid_, b, change_.data(), change);
     BlockMotion motion;
     for (const Run& run : grid_.runs(b)) {
-      const MotionExtremes e = mpm::grid_to_particles<Shape, Flip>(s, tile, change, corner(b), P_, run.begin, run.end);
+      const MotionExtremes e =
+          mpm::grid_to_particles<Shape, Flip, Affine>(s, tile, change, corner(b), P_, run.begin, run.end);
       motion.far = std::max(motion.far, e.displacement);
       motion.fast = std::max(motion.fast, e.speed_squared);
       motion.wave = std::max(motion.wave, wave_speed_[run.material] + std::sqrt(e.speed_squared));
@@ -242,10 +248,10 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::gather(double dt, StepReport& repo
   add_time(seconds_.grid_to_particles, since);
 }
 
-template <int Dim, class Shape, bool Split, bool Flip>
-void ExplicitSolver<Dim, Shape, Split, Flip>::average() {
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::average() {
   const auto since = Clock::now();
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t b = 0; b < grid_.occupied(); ++b) {
     AveragedNode* tile = averaged_tiles_.data() + b * tile_nodes;
     std::fill(tile, tile + tile_nodes, AveragedNode{});
@@ -253,7 +259,7 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::average() {
       if (constants_[run.material].averaged)
         scatter_volumetric<Dim, Shape>(P_, run.begin, run.end, corner(b), h1_, body_, tile);
   }
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t a = 0; a < grid_.active(); ++a) {
     AveragedNode node[block_nodes];
     gather_tiles<Dim, Shape>(grid_, a, averaged_tiles_.data(), node);
@@ -262,13 +268,13 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::average() {
   add_time(seconds_.volumetric, since);
 }
 
-template <int Dim, class Shape, bool Split, bool Flip>
-void ExplicitSolver<Dim, Shape, Split, Flip>::update_stresses(double dt) {
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses(double dt) {
   const auto since = Clock::now();
 #pragma omp parallel
   {
     std::vector<double> trace, shift;
-#pragma omp for schedule(static)
+#pragma omp for schedule(dynamic, 4)
     for (std::size_t b = 0; b < grid_.occupied(); ++b) {
       NodeMean mean[tile_nodes];
       if (averaging_) load_tile<Dim, Shape>(grid_, b, averaged_.data(), mean);
@@ -277,10 +283,8 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::update_stresses(double dt) {
         trace.resize(std::max(trace.size(), run.end - run.begin));
         shift.resize(trace.size(), 0.0);
         if (constants_[run.material].averaged)
-          gather_volumetric<Dim, Shape>(
-              P_, run.begin, run.end, corner(b), h1_,
-              std::min(0.5, options_.mean_stress_relaxation * dt * h1_ * wave_speed_[run.material]), mean, trace.data(),
-              shift.data());
+          gather_volumetric<Dim, Shape>(P_, run.begin, run.end, corner(b), h1_, relaxation(run.material, dt), mean,
+                                        trace.data(), shift.data());
         else
           for (std::size_t p = run.begin; p < run.end; ++p) {
             trace[p - run.begin] = trace_of(P_, p);
@@ -310,11 +314,11 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::update_stresses(double dt) {
   add_time(seconds_.stress, since);
 }
 
-template <int Dim, class Shape, bool Split, bool Flip>
-void ExplicitSolver<Dim, Shape, Split, Flip>::particles_to_grid() {
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::particles_to_grid() {
   const auto since = Clock::now();
   const bool pore = !P_.pore_pressure.empty();
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t b = 0; b < grid_.occupied(); ++b) {
     Vec4* tile = tiles_.data() + b * tile_nodes;
     Vec4* force = Split ? forces_.data() + b * tile_nodes : nullptr;
@@ -330,8 +334,8 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::particles_to_grid() {
   add_time(seconds_.particles_to_grid, since);
 }
 
-template <int Dim, class Shape, bool Split, bool Flip>
-void ExplicitSolver<Dim, Shape, Split, Flip>::scatter_ground_gaps(std::size_t b) {
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::scatter_ground_gaps(std::size_t b) {
   Gap* gap = gap_tiles_.data() + b * tile_nodes;
   std::fill(gap, gap + tile_nodes, Gap{});
   if (!ground_.near_ground(b)) return;
@@ -342,8 +346,8 @@ void ExplicitSolver<Dim, Shape, Split, Flip>::scatter_ground_gaps(std::size_t b)
   scatter_gaps<Dim, Shape>(P_, grid_.first_particle(b), grid_.last_particle(b), corner(b), h1_, distance, gap);
 }
 
-template <int Dim, class Shape, bool Split, bool Flip>
-double ExplicitSolver<Dim, Shape, Split, Flip>::unbalanced_force_ratio(const std::array<double, Dim>& body) const {
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+double ExplicitSolver<Dim, Shape, Split, Transfer>::unbalanced_force_ratio(const std::array<double, Dim>& body) const {
   AlignedVector<Vec4> momentum(grid_.occupied() * tile_nodes, Vec4{}), force(grid_.occupied() * tile_nodes, Vec4{});
   for (std::size_t b = 0; b < grid_.occupied(); ++b) {
     const std::size_t begin = grid_.first_particle(b), end = grid_.last_particle(b);
@@ -380,8 +384,9 @@ double ExplicitSolver<Dim, Shape, Split, Flip>::unbalanced_force_ratio(const std
   return weight > 0.0 ? std::sqrt(unbalanced / weight) : 0.0;
 }
 
-template <int Dim, class Shape, bool Split, bool Flip>
-void ExplicitSolver<Dim, Shape, Split, Flip>::fail(std::size_t begin, std::size_t end, const std::string& what) const {
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::fail(std::size_t begin, std::size_t end,
+                                                       const std::string& what) const {
   // Names the particle that is not finite, else the fastest of the block.
   std::size_t worst = begin;
   double most = -1.0;

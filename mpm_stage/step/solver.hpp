@@ -16,12 +16,15 @@
 namespace tailrun::mpm {
 
 enum class ShapeName { linear, quadratic, cubic, gimp };
-enum class TransferName { apic, flip };
+enum class TransferName { apic, flip, aflip };
 
 struct SolverOptions {
   ShapeName shape = ShapeName::quadratic;
-  TransferName transfer = TransferName::apic;
-  double flip_share = 0.99;  // 1, of FLIP in the FLIP/PIC blend
+  TransferName transfer = TransferName::aflip;
+  double flip_share = 0.99;  // 1, of FLIP in a step of the FLIP/PIC blend
+  // 1, share of APIC in the AFLIP blend over the time that the fastest wave takes through a cell: what the transfer
+  // takes from motion under the grid's resolution then does not depend on the time step.
+  double transfer_damping = 0.3;
   bool volumetric_average = true;
   double mean_stress_relaxation = 0.5;  // 1, of the mean stress towards its average, per h / c
   double courant = 0.5;                 // 1, dt = courant h / max(c + |v|)

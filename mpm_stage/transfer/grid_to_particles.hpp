@@ -45,7 +45,8 @@ inline std::array<double, 9> midpoint_gradient(const std::array<double, 9>& A) {
 }
 
 // What the velocity of a particle is made of. `flip` is the share of FLIP: v <- flip (v + sum w dv) + (1 - flip) sum w
-// v*.
+// v*. With Affine the particle also keeps the grid's affine velocity (Jiang et al. 2015); both together are AFLIP (Fei
+// et al. 2021).
 struct GridToParticles {
   double dt;            // s
   double inverse_cell;  // 1/m
@@ -60,7 +61,7 @@ struct MotionExtremes {
 };
 
 // `velocity` (and `change`, the velocity's change over the step, for FLIP) is the tile, `corner` (m) its node 0.
-template <class Shape, bool Flip>
+template <class Shape, bool Flip, bool Affine>
 MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restrict velocity,
                                  const Vec4* __restrict change, const std::array<double, 2>& corner, Particles<2>& P,
                                  std::size_t begin, std::size_t end) {
@@ -75,10 +76,10 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
   double* __restrict gxy = P.gradient[1].data();
   double* __restrict gyx = P.gradient[2].data();
   double* __restrict gyy = P.gradient[3].data();
-  double* __restrict cxx = Flip ? nullptr : P.affine[0].data();
-  double* __restrict cxy = Flip ? nullptr : P.affine[1].data();
-  double* __restrict cyx = Flip ? nullptr : P.affine[2].data();
-  double* __restrict cyy = Flip ? nullptr : P.affine[3].data();
+  double* __restrict cxx = Affine ? P.affine[0].data() : nullptr;
+  double* __restrict cxy = Affine ? P.affine[1].data() : nullptr;
+  double* __restrict cyx = Affine ? P.affine[2].data() : nullptr;
+  double* __restrict cyy = Affine ? P.affine[3].data() : nullptr;
   double far = 0.0;
   for (std::size_t p = begin; p < end; ++p) {
     double wx[S], dx[S], mx[S], wy[S], dy[S], my[S];
@@ -92,12 +93,12 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
       Vec2 moment = {};
       for (int i = 0; i < S; ++i) {
         row += node[i] * Vec4{wx[i], wx[i], dx[i], dx[i]};
-        if constexpr (!Flip && Shape::apic > 0.0) moment += Vec2{node[i][0], node[i][1]} * Vec2{mx[i], mx[i]};
+        if constexpr (Affine && Shape::apic > 0.0) moment += Vec2{node[i][0], node[i][1]} * Vec2{mx[i], mx[i]};
       }
       v_vx += row * splat(wy[j]);
       vy_c += __builtin_shuffle(row, row, (__attribute__((vector_size(32))) long){0, 1, 0, 1}) *
               Vec4{dy[j], dy[j], my[j], my[j]};
-      if constexpr (!Flip && Shape::apic > 0.0) cx += moment * Vec2{wy[j], wy[j]};
+      if constexpr (Affine && Shape::apic > 0.0) cx += moment * Vec2{wy[j], wy[j]};
     }
     gxx[p] = A0 * v_vx[2];
     gxy[p] = A0 * vy_c[0];
@@ -113,6 +114,8 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
     } else {
       vx[p] = v_vx[0];
       vy[p] = v_vx[1];
+    }
+    if constexpr (Affine) {
       if constexpr (Shape::apic > 0.0) {
         cxx[p] = C0 * cx[0];
         cxy[p] = C0 * vy_c[2];
@@ -155,7 +158,7 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
   return {far, fast, kinetic};
 }
 
-template <class Shape, bool Flip>
+template <class Shape, bool Flip, bool Affine>
 MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restrict velocity,
                                  const Vec4* __restrict change, const std::array<double, 3>& corner, Particles<3>& P,
                                  std::size_t begin, std::size_t end) {
@@ -176,7 +179,7 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
         for (int i = 0; i < S; ++i) {
           rv += node[i] * splat(w[0][i]);
           rg += node[i] * splat(d[0][i]);
-          if constexpr (!Flip && Shape::apic > 0.0) rc += node[i] * splat(m[0][i]);
+          if constexpr (Affine && Shape::apic > 0.0) rc += node[i] * splat(m[0][i]);
         }
         pv += rv * splat(w[1][j]);
         pgx += rg * splat(w[1][j]);
@@ -208,8 +211,10 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
           for (int i = 0; i < S; ++i) dv += change[start + (k * T + j) * T + i] * splat(w[0][i] * w[1][j] * w[2][k]);
       for (int a = 0; a < 3; ++a) P.velocity[a][p] = s.flip * (P.velocity[a][p] + dv[a]) + (1.0 - s.flip) * v[a];
     } else {
+      for (int i = 0; i < 3; ++i) P.velocity[i][p] = v[i];
+    }
+    if constexpr (Affine) {
       for (int i = 0; i < 3; ++i) {
-        P.velocity[i][p] = v[i];
         if constexpr (Shape::apic > 0.0) {
           P.affine[3 * i][p] = Shape::apic * h1 * cx[i];
           P.affine[3 * i + 1][p] = Shape::apic * h1 * cy[i];
