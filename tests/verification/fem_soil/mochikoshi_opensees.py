@@ -13,7 +13,7 @@ import sys
 import h5py
 import numpy as np
 
-from rows import DATA, Report, Runner, table
+from rows import DATA, MODES, Report, Runner, table
 
 POINTS = ("crest", "mid_face", "upper_toe", "beach_15", "beach_200", "starter_toe", "base_crest")
 LAYER = 3.0  # m
@@ -56,10 +56,10 @@ def main():
         for t in (5, 10):
             for name in POINTS:
                 found, wanted = at(ours, "time_s", name, t), at(reference, "t_s", name, t)
-                report.add(f"displacement of {name} at {t} s, {mode} mode",
+                report.add(f"displacement of {name} at {t} s, {MODES[mode]}",
                            np.linalg.norm(found - wanted) / np.linalg.norm(wanted), 0.10, "OpenSees, same mesh",
                            np.linalg.norm(found), np.linalg.norm(wanted))
-            report.add(f"layer means of r_u at {t} s, {mode} mode", max(abs(a - b) for _, a, b in layers[t]), 0.07,
+            report.add(f"layer means of r_u at {t} s, {MODES[mode]}", max(abs(a - b) for _, a, b in layers[t]), 0.07,
                        "OpenSees, same mesh")
 
     def draw(plt):
@@ -70,7 +70,7 @@ def main():
             axes[0].text(11.6, reference[f"{name}_ux_m"][-1], name, fontsize=7, va="center")
             for mode, (ours, _) in kept.items():
                 axes[0].plot(ours["time_s"], ours[f"{name}_ux_m"], color=COLOURS[mode], lw=0.7,
-                             ls="-" if mode == "improved" else "--", label=f"tailrun, {mode}" if k == 0 else None)
+                             ls="-" if mode == "improved" else "--", label=f"tailrun, {MODES[mode]}" if k == 0 else None)
         axes[0].set(xlabel="time, s", ylabel="horizontal displacement, m", xlim=(0, 13.2))
         axes[0].legend(fontsize=7)
         for t in (5, 10):

@@ -12,7 +12,7 @@ import sys
 
 import numpy as np
 
-from rows import Report, Runner
+from rows import MODES, Report, Runner
 
 # (CSR, static shear ratio): cycles to 1 % and 3 % shear strain.
 SAND_CYCLES = {
@@ -57,7 +57,7 @@ def mixed_path(run, report, mode, expected, ceiling):
         p, yy, xy = (history[k][i] / 1e3 for k in ("mean_effective_stress", "vertical_effective_stress", "shear_stress"))
         found = np.array((2 * p - yy, yy, xy))
         worst = max(worst, np.linalg.norm(found - wanted) / np.linalg.norm(wanted))
-    report.add(f"stress after the legs of a path with volume change, {mode} mode", worst, ceiling, "OpenSees' material")
+    report.add(f"stress after the legs of a path with volume change, {MODES[mode]}", worst, ceiling, "OpenSees' material")
 
 
 def monotonic(run, report, mode, file, change, levels, wanted, what, ceiling):
@@ -66,7 +66,7 @@ def monotonic(run, report, mode, file, change, levels, wanted, what, ceiling):
              if any(abs(e["shear_strain"] - level) < 1e-9 for level in levels)]
     if len(wanted) == len(levels) + 1:
         found.insert(0, summary["peak_shear_stress"] / 1e3)
-    report.add(f"monotonic simple shear, {what}, {mode} mode",
+    report.add(f"monotonic simple shear, {what}, {MODES[mode]}",
                np.abs(np.array(found) / np.array(wanted) - 1.0).max(), ceiling, "OpenSees' material")
 
 
@@ -94,12 +94,12 @@ def pm4sand_point(run, report, mode):
             if bias == 0:
                 to_3[csr] = found[1]
         what = file[len("cyclic_"):-len(".json")]
-        report.add(f"cycles to 1 % and 3 %, {what}, {mode} mode", worst, 1.0, "OpenSees' material")
+        report.add(f"cycles to 1 % and 3 %, {what}, {MODES[mode]}", worst, 1.0, "OpenSees' material")
         if file in CRR_15:
             levels = sorted(to_3)
             crr = math.exp(np.interp(-math.log(15.0), [-math.log(to_3[c]) for c in levels],
                                      [math.log(c) for c in levels]))
-            report.add(f"CSR for 15 cycles to 3 %, {what}, {mode} mode", abs(crr / CRR_15[file] - 1), 0.05,
+            report.add(f"CSR for 15 cycles to 3 %, {what}, {MODES[mode]}", abs(crr / CRR_15[file] - 1), 0.05,
                        "Idriss & Boulanger (2008)", crr, CRR_15[file])
 
 
@@ -114,7 +114,7 @@ def pm4silt_point(run, report, mode):
         for n, w in zip(cycles_at(run, "cyclic.json", mode, csr), wanted):
             # The table says "between this reversal and the next".
             worst = max(worst, max(w - n, n - (w + 0.5), 0.0) / w)
-    report.add(f"cycles to 1 % and 3 %, {mode} mode", worst, 0.02, "OpenSees' material")
+    report.add(f"cycles to 1 % and 3 %, {MODES[mode]}", worst, 0.02, "OpenSees' material")
 
 
 def main():

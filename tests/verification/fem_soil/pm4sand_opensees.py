@@ -13,7 +13,7 @@ import sys
 
 import numpy as np
 
-from rows import DATA, Report, Runner, rms, table
+from rows import DATA, MODES, Report, rms, Runner, table
 
 # History, and cycles to r_u = 0.95 and to a shear strain of 3 % (the tailings pass 0.95 only while flowing).
 CYCLIC = {"loose": ("cyclic_loose_csr0.090.csv", 13.498, 13.742),
@@ -21,7 +21,6 @@ CYCLIC = {"loose": ("cyclic_loose_csr0.090.csv", 13.498, 13.742),
           "foundation": ("cyclic_foundation_csr0.320.csv", 9.508, 12.697),
           "tailings": ("cyclic_tailings_csr0.120.csv", None, 4.199)}
 MONOTONIC = ("tailings_sv17", "tailings_sv186", "loose_sv100")
-MODES = ("improved", "opensees")
 COLOURS = {"improved": "#c0392b", "opensees": "#2471a3"}
 
 
@@ -50,7 +49,7 @@ def cyclic(run, report, kept):
                                       lambda scene: scene.update(output={"every": 1}), mode)
             kept[name, mode] = (ours, reference)
             against = "OpenSees, SSPquad"
-            what = f"{name}, CSR {csr:g}, {mode} mode"
+            what = f"{name}, CSR {csr:g}, {MODES[mode]}"
             ru = np.interp(n, ours["cycle"], ours["excess_pore_pressure_ratio"])
             report.add(f"RMS of r_u, {what}", rms(ru - reference["ru"][:over]), 0.02, against)
             report.add(f"RMS distance of stress-strain curves, {what}",
@@ -70,9 +69,9 @@ def monotonic(run, report, kept):
             kept[name, mode] = (ours, reference)
             tau = np.interp(reference["gamma"], ours["shear_strain"], ours["shear_stress"]) / 1e3
             ru = np.interp(reference["gamma"], ours["shear_strain"], ours["excess_pore_pressure_ratio"])
-            report.add(f"RMS of shear stress over the peak, {name}, {mode} mode", rms(tau - reference["tau_kPa"]) / peak,
+            report.add(f"RMS of shear stress over the peak, {name}, {MODES[mode]}", rms(tau - reference["tau_kPa"]) / peak,
                        0.02, "OpenSees, SSPquad")
-            report.add(f"RMS of r_u, {name}, {mode} mode", rms(ru - reference["ru"]), 0.02, "OpenSees, SSPquad")
+            report.add(f"RMS of r_u, {name}, {MODES[mode]}", rms(ru - reference["ru"]), 0.02, "OpenSees, SSPquad")
 
 
 def draw_cyclic(kept):
@@ -86,7 +85,7 @@ def draw_cyclic(kept):
             for mode in MODES:
                 ours = kept[name, mode][0]
                 style = dict(color=COLOURS[mode], lw=0.6, ls="-" if mode == "improved" else "--")
-                upper.plot(100 * ours["shear_strain"][::4], ours["shear_stress"][::4] / 1e3, label=f"tailrun, {mode}", **style)
+                upper.plot(100 * ours["shear_strain"][::4], ours["shear_stress"][::4] / 1e3, label=f"tailrun, {MODES[mode]}", **style)
                 lower.plot(ours["cycle"][::4], ours["excess_pore_pressure_ratio"][::4], **style)
             upper.set(title=name, xlabel="shear strain, %", ylabel="shear stress, kPa" if column == 0 else "")
             lower.set(xlabel="cycles", ylabel="$r_u$" if column == 0 else "", ylim=(-0.1, 1.05))
@@ -104,7 +103,7 @@ def draw_monotonic(kept):
             for mode in MODES:
                 ours = kept[name, mode][0]
                 axis.plot(100 * ours["shear_strain"], ours["shear_stress"] / 1e3, color=COLOURS[mode], lw=0.8,
-                          ls="-" if mode == "improved" else "--", label=f"tailrun, {mode}")
+                          ls="-" if mode == "improved" else "--", label=f"tailrun, {MODES[mode]}")
             axis.set(title=name.replace("_sv", ", ") + " kPa", xlabel="shear strain, %", ylabel="shear stress, kPa")
         axes[0].legend(fontsize=6)
         return figure

@@ -9,6 +9,7 @@ import time
 
 import numpy as np
 
+MODES = {"improved": "improved mode", "opensees": "compatible mode"}
 DATA = pathlib.Path(__file__).resolve().parents[2] / "data" / "opensees"
 
 
@@ -56,12 +57,14 @@ class Report:
 
         matplotlib.use("Agg")
         import matplotlib.pyplot as plt
+        from PIL import Image
 
         plt.rcParams.update({"font.size": 8, "axes.linewidth": 0.6, "legend.frameon": False,
                              "figure.constrained_layout.use": True})
         figure = draw(plt)
-        figure.savefig(self.folder / file, dpi=90, pil_kwargs={"optimize": True})
+        figure.savefig(self.folder / file, dpi=90)
         plt.close(figure)
+        Image.open(self.folder / file).convert("RGB").quantize(48).save(self.folder / file, optimize=True)
         self.pictures.append({"file": file, "caption": caption})
 
     def finish(self):

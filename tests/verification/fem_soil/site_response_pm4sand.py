@@ -14,7 +14,7 @@ import sys
 
 import numpy as np
 
-from rows import DATA, Report, Runner, rms, table
+from rows import DATA, MODES, Report, rms, Runner, table
 
 DEPTHS = ("2.5", "5.5", "9.5", "15.5", "25.5")
 OPENSEES_SECONDS = 10.03  # processor time of OpenSees at this time step on the same kind of machine
@@ -50,10 +50,10 @@ def main():
             vertical = ours[f"depth_{depth}_effective_stress_yy_Pa"]
             ratio[depth] = np.interp(t, ours["time_s"], 1.0 - vertical / vertical[0])
         kept[mode] = (acceleration, ratio)
-        report.add(f"RMS of the surface acceleration over the reference's, {mode} mode",
+        report.add(f"RMS of the surface acceleration over the reference's, {MODES[mode]}",
                    rms(acceleration - reference["a_surf_m_s2"]) / rms(reference["a_surf_m_s2"]), 0.05, "OpenSees")
         for depth in DEPTHS:
-            report.add(f"largest difference of r_u at {depth} m, {mode} mode",
+            report.add(f"largest difference of r_u at {depth} m, {MODES[mode]}",
                        np.abs(ratio[depth] - reference[f"ru_z{depth}"]).max(), 0.05, "OpenSees")
         if change is None:  # the compatible mode repeats OpenSees' integration and its cost
             report.add("times faster than OpenSees, improved mode", OPENSEES_SECONDS / seconds, 10.0, "OpenSees", seconds,
@@ -64,7 +64,7 @@ def main():
         axes[0].plot(t, reference["a_surf_m_s2"], color="0.6", lw=1.4, label="OpenSees")
         for mode, (acceleration, ratio) in kept.items():
             style = dict(color=COLOURS[mode], lw=0.6, ls="-" if mode == "improved" else "--")
-            axes[0].plot(t, acceleration, label=f"tailrun, {mode}", **style)
+            axes[0].plot(t, acceleration, label=f"tailrun, {MODES[mode]}", **style)
             for depth in DEPTHS:
                 axes[1].plot(t, ratio[depth], **style)
         for depth in DEPTHS:

@@ -1,0 +1,37 @@
+#!/usr/bin/python3
+"""Every key that fem_stage and mpm_stage read from a case file is in docs/fem.md or docs/mpm.md.
+
+documented_keys_test.py REPOSITORY
+"""
+import pathlib
+import re
+import sys
+
+PAGES = {
+    "docs/fem.md": ["fem_stage/model/fem_case.cpp", "fem_stage/model/boundary_options.cpp",
+                    "fem_stage/material/material_definition.cpp", "fem_stage/element_test/element_test_case.cpp",
+                    "fem_stage/element_test/calibration.cpp"],
+    "docs/mpm.md": ["mpm_stage/scene/scene_reader.cpp", "mpm_stage/scene/material_reader.cpp",
+                    "mpm_stage/scene/terrain_reader.cpp", "mpm_stage/scene/particle_generator.cpp"],
+}
+READERS = ("number|number_or|number_if|integer|integer_or|boolean_or|text|text_or|texts_or|choice|choice_or|numbers|numbers_or|"
+           "table|file|object|object_if|object_or_empty|list|list_or_empty")
+
+
+def main():
+    root = pathlib.Path(sys.argv[1])
+    missing, known = [], 0
+    for page, sources in PAGES.items():
+        content = (root / page).read_text()
+        for name in sources:
+            text = (root / name).read_text()
+            keys = set(re.findall(rf'[.>](?:{READERS})\(\s*"(\w+)"', text))
+            keys |= set(re.findall(r'(?:optional_number|read_points)\(node, "(\w+)"', text))
+            known += len(keys)
+            missing += [f"{name}: {key} is not in {page}" for key in sorted(keys) if not re.search(rf"\b{key}\b", content)]
+    print("\n".join(missing) or f"{known} keys, all documented")
+    sys.exit(1 if missing or known < 200 else 0)
+
+
+if __name__ == "__main__":
+    main()
