@@ -3,10 +3,11 @@
 
     collect_verification.py out/verification -o out/verification.json [--document docs/verification.md]
 
-The folder holds ctest.xml (JUnit) and, for each test that measures errors, <name>.json: one object or a list of them with
-name (the test's), row (of the verification table), quantity, error, ceiling, and optionally against, seconds, compare
-("at_least" where the figure must reach the ceiling) and pictures ([{"file", "caption"}], files beside it). Tests find the
-folder in the environment variable TAILRUN_VERIFICATION_DIR. The document has a table for each stage and the pictures.
+The folder holds ctest.xml (JUnit) and, for each test that measures errors, <name>.json: one object or a list of them
+with name (the test's), row (of the verification table), quantity, error, ceiling, and optionally against, seconds,
+compare ("at_least" where the figure must reach the ceiling) and pictures ([{"file", "caption"}], files beside it).
+Tests find the folder in the environment variable TAILRUN_VERIFICATION_DIR. The document has a table for each stage and
+the pictures.
 """
 
 import argparse
@@ -88,9 +89,8 @@ def document(rows, folder, path):
     lines = [
         "# Verification: errors reached",
         "",
-        "Written by `make -f Makefile.cases verification` from what the tests measured; do not edit. Every row is a scene "
-        "under `cases/verification/` that runs by hand. `Seconds` is the whole test's wall-clock time, on the machine that "
-        "ran it.",
+        "Written by `make -f Makefile.cases verification` from what the tests measured; do not edit. Scenes are under "
+        "`cases/verification/` and run by hand. `Seconds` is the whole test's wall-clock time where it ran.",
         "",
         f"{held} of {total} figures are within their ceilings.",
     ]
@@ -104,7 +104,8 @@ def document(rows, folder, path):
             for picture in row.get("pictures", []):
                 pictures.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(folder / picture["file"], pictures / picture["file"])
-                lines += ["", f"![{picture['caption']}](pictures/verification/{picture['file']})", "", picture["caption"] + "."]
+                lines += ["", f"![{picture['caption']}](pictures/verification/{picture['file']})"]
+                lines += ["", picture["caption"] + "."]
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text("\n".join(lines) + "\n")
 
@@ -123,7 +124,8 @@ def main():
     arguments.output.write_text(json.dumps(rows, indent=1) + "\n")
     for row in rows:
         error = f"{figure(row['error'])} ({figure(row['ceiling'])})" if "error" in row else ""
-        print(f"  {'ok    ' if row['passed'] else 'FAILED'} {error:20s} {row.get('row', row['name'])}: {row.get('quantity', '')}")
+        state = "ok    " if row["passed"] else "FAILED"
+        print(f"  {state} {error:20s} {row.get('row', row['name'])}: {row.get('quantity', '')}")
     print(arguments.output)
     if arguments.document:
         document(rows, arguments.folder, arguments.document)

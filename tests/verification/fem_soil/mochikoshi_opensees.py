@@ -70,7 +70,8 @@ def main():
             axes[0].text(11.6, reference[f"{name}_ux_m"][-1], name, fontsize=7, va="center")
             for mode, (ours, _) in kept.items():
                 axes[0].plot(ours["time_s"], ours[f"{name}_ux_m"], color=COLOURS[mode], lw=0.7,
-                             ls="-" if mode == "improved" else "--", label=f"tailrun, {MODES[mode]}" if k == 0 else None)
+                             ls="-" if mode == "improved" else "--",
+                             label=f"tailrun, {MODES[mode]}" if k == 0 else None)
         axes[0].set(xlabel="time, s", ylabel="horizontal displacement, m", xlim=(0, 13.2))
         axes[0].legend(fontsize=7)
         for t in (5, 10):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Rows pm4sand_point and pm4silt_point: single material points against tables of OpenSees' own material driven directly.
+"""Rows pm4sand_point and pm4silt_point: material points against tables of OpenSees' own material driven directly.
 
 pm4_points.py FEM_STAGE SCENES_FOLDER ROW MODE OUTPUT_FOLDER
 
@@ -54,10 +54,12 @@ def mixed_path(run, report, mode, expected, ceiling):
     worst = 0.0
     for step, wanted in zip(ends, np.array(expected)):
         i = int(np.flatnonzero(history["step"] == step)[0])
-        p, yy, xy = (history[k][i] / 1e3 for k in ("mean_effective_stress", "vertical_effective_stress", "shear_stress"))
+        columns = ("mean_effective_stress", "vertical_effective_stress", "shear_stress")
+        p, yy, xy = (history[k][i] / 1e3 for k in columns)
         found = np.array((2 * p - yy, yy, xy))
         worst = max(worst, np.linalg.norm(found - wanted) / np.linalg.norm(wanted))
-    report.add(f"stress after the legs of a path with volume change, {MODES[mode]}", worst, ceiling, "OpenSees' material")
+    report.add(f"stress after the legs of a path with volume change, {MODES[mode]}", worst, ceiling,
+               "OpenSees' material")
 
 
 def monotonic(run, report, mode, file, change, levels, wanted, what, ceiling):

@@ -25,7 +25,7 @@ COLOURS = {"improved": "#c0392b", "opensees": "#2471a3"}
 
 
 def curve_distance(ours, reference, count, amplitude):
-    """Of the first `count` points of the reference from our curve, both in units of largest strain and of amplitude (kPa)."""
+    """Of the reference's first `count` points from our curve; units: the largest strain, the amplitude."""
     gamma, tau, n = (reference[k][:count] for k in ("gamma", "tau_kPa", "N_cycles"))
     largest, out = np.abs(gamma).max(), []
     x, y = ours["shear_strain"] / largest, ours["shear_stress"] / 1e3 / amplitude
@@ -69,8 +69,8 @@ def monotonic(run, report, kept):
             kept[name, mode] = (ours, reference)
             tau = np.interp(reference["gamma"], ours["shear_strain"], ours["shear_stress"]) / 1e3
             ru = np.interp(reference["gamma"], ours["shear_strain"], ours["excess_pore_pressure_ratio"])
-            report.add(f"RMS of shear stress over the peak, {name}, {MODES[mode]}", rms(tau - reference["tau_kPa"]) / peak,
-                       0.02, "OpenSees, SSPquad")
+            report.add(f"RMS of shear stress over the peak, {name}, {MODES[mode]}",
+                       rms(tau - reference["tau_kPa"]) / peak, 0.02, "OpenSees, SSPquad")
             report.add(f"RMS of r_u, {name}, {MODES[mode]}", rms(ru - reference["ru"]), 0.02, "OpenSees, SSPquad")
 
 
@@ -85,7 +85,8 @@ def draw_cyclic(kept):
             for mode in MODES:
                 ours = kept[name, mode][0]
                 style = dict(color=COLOURS[mode], lw=0.6, ls="-" if mode == "improved" else "--")
-                upper.plot(100 * ours["shear_strain"][::4], ours["shear_stress"][::4] / 1e3, label=f"tailrun, {MODES[mode]}", **style)
+                upper.plot(100 * ours["shear_strain"][::4], ours["shear_stress"][::4] / 1e3,
+                           label=f"tailrun, {MODES[mode]}", **style)
                 lower.plot(ours["cycle"][::4], ours["excess_pore_pressure_ratio"][::4], **style)
             upper.set(title=name, xlabel="shear strain, %", ylabel="shear stress, kPa" if column == 0 else "")
             lower.set(xlabel="cycles", ylabel="$r_u$" if column == 0 else "", ylim=(-0.1, 1.05))
@@ -116,8 +117,10 @@ def main():
     run, kept = Runner(program, pathlib.Path(scenes) / "pm4sand_opensees", output), {}
     cyclic(run, report, kept)
     monotonic(run, report, kept)
-    report.picture("pm4sand_cyclic.png", "Undrained cyclic simple shear, 100 kPa: tailrun over OpenSees", draw_cyclic(kept))
-    report.picture("pm4sand_monotonic.png", "Undrained monotonic simple shear: tailrun over OpenSees", draw_monotonic(kept))
+    report.picture("pm4sand_cyclic.png", "Undrained cyclic simple shear, 100 kPa: tailrun over OpenSees",
+                   draw_cyclic(kept))
+    report.picture("pm4sand_monotonic.png", "Undrained monotonic simple shear: tailrun over OpenSees",
+                   draw_monotonic(kept))
     return report.finish()
 
 

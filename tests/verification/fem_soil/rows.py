@@ -1,4 +1,4 @@
-"""What every check of this folder shares: running fem_stage, reading its files, and reporting errors against ceilings."""
+"""What every check of this folder shares: running fem_stage, reading its files, reporting errors against ceilings."""
 import csv
 import json
 import math
