@@ -177,6 +177,10 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
           : HourglassShape::constant_jacobian;
   out.hourglass_current_modulus =
       element.choice_or("hourglass_modulus", {"initial", "current"}, "initial") == "current";
+  out.averaged_mass = element.choice_or("mass", {"lumped", "averaged"}, "lumped") == "averaged";
+  if (out.averaged_mass && out.pressure_points == 1)
+    element.fail("mass",
+                 "'averaged' needs pressure_quadrature 2: the consistent part is integrated by the same points");
 
   std::vector<std::string> material_names;
   for (const auto& [name, node] : root.object("materials").members()) {

@@ -100,6 +100,7 @@ struct FemCase {
   int pressure_points = 2;
   HourglassShape hourglass_shape = HourglassShape::constant_jacobian;
   bool hourglass_current_modulus = false;
+  bool averaged_mass = false;  // half lumped, half consistent
   std::vector<MaterialDefinition> materials;
   std::map<std::string, RegionOptions> regions;
   BoundaryOptions boundaries;

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "fem_stage/solver/averaged_mass.hpp"
+
 namespace tailrun::fem {
 namespace {
 
@@ -219,6 +221,12 @@ void ElementForces::matrix(std::size_t e, double mass_factor, double stiffness_f
     const double inertia = mass_factor * model_.density[e] * model_.elements.nodal_volume[ia];
     local[12 * (3 * a) + 3 * a] += inertia;
     local[12 * (3 * a + 1) + 3 * a + 1] += inertia;
+    if (model_.options->averaged_mass && mass_factor != 0.0)
+      for (int b = 0; b < 4; ++b) {
+        const double difference = mass_factor * averaged_mass_difference(model_, e, a, b);
+        local[12 * (3 * a) + 3 * b] += difference;
+        local[12 * (3 * a + 1) + 3 * b + 1] += difference;
+      }
   }
 }
 

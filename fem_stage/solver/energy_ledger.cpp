@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fem_stage/solver/averaged_mass.hpp"
+
 namespace tailrun::fem {
 
 double EnergyLedger::residual() const {
@@ -32,6 +34,7 @@ void EnergyRecorder::after(const Model& model, const State& state, const Element
     kinetic += 0.5 * model.nodal_mass[i / 2] * state.velocity[i] * state.velocity[i];
   }
   ledger.external_work += external;
+  if (model.options->averaged_mass) kinetic += averaged_kinetic_difference(model, state.velocity);
   ledger.kinetic_energy = kinetic;
   for (const auto& dashpot : newmark.dashpots()) {
     const std::size_t i = 2 * static_cast<std::size_t>(dashpot.node) + static_cast<std::size_t>(dashpot.freedom);

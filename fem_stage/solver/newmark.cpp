@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
+#include "fem_stage/solver/averaged_mass.hpp"
 
 namespace tailrun::fem {
 namespace {
@@ -155,6 +156,14 @@ StepResult Newmark::step(State& state, MaterialPoints& points, ElementForces& fo
     }
 
     std::fill(right_.begin(), right_.end(), 0.0);
+    if (model_.options->averaged_mass) {
+      inertia_difference_.assign(2 * nodes, 0.0);
+      subtract_averaged_inertia(model_, acceleration_, inertia_difference_);
+      for (std::size_t n = 0; n < nodes; ++n)
+        for (std::size_t i = 0; i < 2; ++i)
+          if (const int equation = equations_.number[3 * n + i]; equation >= 0)
+            right_[static_cast<std::size_t>(equation)] += inertia_difference_[2 * n + i];
+    }
     for (std::size_t n = 0; n < nodes; ++n) {
       for (std::size_t i = 0; i < 2; ++i) {
         const int equation = equations_.number[3 * n + i];

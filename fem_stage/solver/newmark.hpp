@@ -80,6 +80,7 @@ class Newmark {
   int last_iterations_ = 0;
   double last_step_ = 0.0;
   SolverCounts counts_;
+  std::vector<double> inertia_difference_;  // N, (N, 2), only with averaged mass
   std::vector<double> increment_, velocity_, acceleration_, pressure_, pressure_rate_, element_residual_, load_force_,
       right_;
 };
