@@ -43,12 +43,16 @@ class Runner:
         with open(self.root / "tests/data/opensees" / name) as f:
             return [{k: float(v) for k, v in row.items()} for row in csv.DictReader(f)]
 
-    def run(self, case, change=None, label="run"):
-        """Runs a scene, changed by `change` where given. Returns its folder."""
+    def empty_folder(self, label):
         folder = self.output / label
         folder.mkdir(parents=True, exist_ok=True)
         for old in folder.glob("*"):
             old.unlink()
+        return folder
+
+    def run(self, case, change=None, label="run"):
+        """Runs a scene, changed by `change` where given. Returns its folder."""
+        folder = self.empty_folder(label)
         path = self.root / "cases/verification" / case
         if change is not None:
             scene = self.scene(case)
@@ -286,7 +290,7 @@ def consolidation(r):
                                   "ratio_limit": 0}
 
     folder = r.run("terzaghi/fem.json", short)
-    after = r.output / "consolidation"
+    after = r.empty_folder("consolidation")
     subprocess.run([r.program, "consolidate", str(folder / "fem.json"), "--mesh", str(folder / "mesh.msh"), "--from",
                     str(folder / "snapshot_t817.500.h5"), "-o", str(after), "--quiet", "--threads", "1"], check=True)
     s = State(after / "consolidated.h5")
@@ -309,10 +313,7 @@ def restart(r):
             scene["output"] = {"snapshots": [0.6, 1], "history_interval": 0.1}
 
         whole = r.run("wave_absorption/fem.json", halves, base)
-        rest = r.output / f"{base}_rest"
-        rest.mkdir(parents=True, exist_ok=True)
-        for old in rest.glob("*"):
-            old.unlink()
+        rest = r.empty_folder(f"{base}_rest")
         subprocess.run([r.program, "shake", str(whole / "fem.json"), "--mesh", str(whole / "mesh.msh"), "--from",
                         str(whole / "snapshot_t00.600.h5"), "-o", str(rest), "--quiet", "--threads", "1"], check=True)
         a, b = State(whole / "snapshot_t01.000.h5"), State(rest / "snapshot_t01.000.h5")
