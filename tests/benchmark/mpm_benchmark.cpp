@@ -1,0 +1,148 @@
+// Whole steps of the MPM stage in 2-D: particle-steps per second and core by material, transfer, number of particles
+// and threads; what each feature that a scene may leave out costs; memory per particle; and the shares of this
+// machine's memory bandwidth and multiply-add rate, which a probe measures first.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <map>
+
+#include "machine_probe.hpp"
+#include "stirred_block.hpp"
+
+namespace {
+
+using namespace tailrun;
+using bench::BlockOptions;
+
+std::map<int, double> bandwidth;  // bytes/s by threads
+double flop_rate = 0.0;           // flops/s of a core
+
+// Bytes that a step has to move between memory and core per particle when the block does not fit into the caches: each
+// column that is read counts once and each that is written twice (fetch and write back); tiles and nodes are left out.
+double bytes_per_step(const BlockOptions& o) {
+  const bool affine = o.solver.transfer != mpm::TransferName::flip, flip = o.solver.transfer != mpm::TransferName::apic;
+  const int affine_columns = affine ? 4 : 0, pore = o.pore_pressure != mpm::PorePressure::total ? 1 : 0;
+  const bool averaging = o.averaged && o.solver.volumetric_average;
+  const int strength = o.model == mpm::Model::mohr_coulomb || o.model == mpm::Model::tresca ? 1 : 0;
+  // G2P: position and velocity written, affine and gradient written over, mass read.
+  int columns = 2 * 2 + (flip ? 2 * 2 : 2 * 2) + 2 * affine_columns + 2 * 4 + 1;
+  // Average: position, volume, mass, gradient's diagonal, three stresses read once more for the nodes' sums.
+  if (averaging) columns += 2 + 1 + 1 + 2 + 3 + pore;
+  // Stress and P2G of a block, one pass: gradient, position, velocity, affine and mass read; stress, volume, plastic
+  // strain and pore pressure written; strength read.
+  columns += 4 + 2 + 2 + affine_columns + 1 + 2 * (4 + 1 + strength + pore) + strength;
+  return 8.0 * columns;
+}
+
+// Floating point operations of a step per particle with quadratic shape functions, counted from the formulae: weights
+// of two directions, 9 nodes of 4 lanes in both transfers, gradient, return mapping.
+double flops_per_step(const BlockOptions& o) {
+  const bool flip = o.solver.transfer != mpm::TransferName::apic;
+  const double weights = 2 * 22.0;
+  const double gather = 9 * 8 + 3 * 16 + 9 * 4 + 3 * 4 + (flip ? 9 * 9 + 10 : 0) + 40;
+  const double scatter = 9 * 16 + 3 * 20 + 3 * 16 + (flip ? 9 * 16 + 6 * 8 : 0) + 30;
+  const double stress = o.model == mpm::Model::mohr_coulomb ? 190 : o.model == mpm::Model::tresca ? 165 : 70;
+  return 2 * weights + gather + scatter + stress + (o.averaged && o.solver.volumetric_average ? 110 : 0);
+}
+
+void steps(benchmark::State& state, BlockOptions options) {
+  const auto particles = static_cast<std::size_t>(state.range(0));
+  const int threads = static_cast<int>(state.range(1));
+  omp_set_num_threads(threads);
+  bench::StirredBlock block(particles, options);
+  for (int i = 0; i < 3; ++i) block.step();
+  const auto sorts = block.solver().sorts();
+  const mpm::PhaseSeconds before = block.solver().seconds();
+  const double since = bench::seconds();
+  for (auto _ : state) block.step();
+  const double seconds = bench::seconds() - since;
+  const mpm::PhaseSeconds& after = block.solver().seconds();
+  const double done = static_cast<double>(state.iterations()) * static_cast<double>(block.solver().particles().count());
+  const double per_core = done / seconds / threads;
+  state.counters["particle_steps_per_s_core"] = per_core;
+  state.counters["bytes_per_particle"] = block.bytes_per_particle();
+  state.counters["bytes_per_particle_step"] = bytes_per_step(options);
+  state.counters["bandwidth_share"] = bytes_per_step(options) * per_core * threads / bandwidth[threads];
+  if (options.solver.shape == mpm::ShapeName::quadratic)
+    state.counters["flops_share"] = flops_per_step(options) * per_core / flop_rate;
+  state.counters["sorts"] = static_cast<double>(block.solver().sorts() - sorts);
+  const auto ns = [&](double mpm::PhaseSeconds::*phase) {
+    return 1e9 * (after.*phase - before.*phase) * threads / done;
+  };
+  state.counters["ns_grid"] = ns(&mpm::PhaseSeconds::grid);
+  state.counters["ns_g2p"] = ns(&mpm::PhaseSeconds::grid_to_particles);
+  state.counters["ns_average"] = ns(&mpm::PhaseSeconds::volumetric);
+  state.counters["ns_stress"] = ns(&mpm::PhaseSeconds::stress);
+  state.counters["ns_p2g"] = ns(&mpm::PhaseSeconds::particles_to_grid);
+  state.counters["ns_sort"] = ns(&mpm::PhaseSeconds::sort);
+}
+
+// As many steps as make ten million particle-steps: about a second.
+void add(const std::string& name, const BlockOptions& options, long particles, int threads) {
+  benchmark::RegisterBenchmark(name.c_str(), steps, options)
+      ->Args({particles, threads})
+      ->ArgNames({"particles", "threads"})
+      ->Iterations(10'000'000 / particles)
+      ->UseRealTime()
+      ->Unit(benchmark::kMillisecond);
+}
+
+void add_main_table(int most_threads) {
+  const std::pair<const char*, mpm::Model> models[] = {{"mohr_coulomb", mpm::Model::mohr_coulomb},
+                                                       {"tresca", mpm::Model::tresca},
+                                                       {"linear_elastic", mpm::Model::linear_elastic}};
+  const std::pair<const char*, mpm::TransferName> transfers[] = {{"apic", mpm::TransferName::apic},
+                                                                 {"aflip", mpm::TransferName::aflip}};
+  for (const auto& [model_name, model] : models)
+    for (const auto& [transfer_name, transfer] : transfers)
+      for (const long particles : {50'000L, 200'000L, 1'000'000L})
+        for (int threads = 1; threads <= most_threads; ++threads) {
+          BlockOptions o;
+          o.model = model;
+          o.solver.transfer = transfer;
+          o.averaged = model != mpm::Model::linear_elastic;
+          add(fmt::format("step/{}/{}", model_name, transfer_name), o, particles, threads);
+        }
+}
+
+// One feature changed at a time against Mohr-Coulomb soil with APIC, quadratic shape functions and nothing else.
+void add_features() {
+  BlockOptions plain;
+  plain.averaged = false;
+  plain.solver.transfer = mpm::TransferName::apic;
+  const auto line = [&](const char* name, auto change) {
+    BlockOptions o = plain;
+    change(o);
+    add(fmt::format("feature/{}", name), o, 200'000, 1);
+  };
+  line("none", [](BlockOptions&) {});
+  line("volumetric_average", [](BlockOptions& o) { o.averaged = true; });
+  line("pore_pressure_frozen", [](BlockOptions& o) { o.pore_pressure = mpm::PorePressure::frozen; });
+  line("pore_pressure_undrained", [](BlockOptions& o) { o.pore_pressure = mpm::PorePressure::undrained; });
+  line("terrain", [](BlockOptions& o) { o.terrain = true; });
+  line("local_damping", [](BlockOptions& o) { o.solver.local_damping = 0.1; });
+  line("aflip", [](BlockOptions& o) { o.solver.transfer = mpm::TransferName::aflip; });
+  line("flip", [](BlockOptions& o) { o.solver.transfer = mpm::TransferName::flip; });
+  line("linear", [](BlockOptions& o) { o.solver.shape = mpm::ShapeName::linear; });
+  line("gimp", [](BlockOptions& o) { o.solver.shape = mpm::ShapeName::gimp; });
+  line("cubic", [](BlockOptions& o) { o.solver.shape = mpm::ShapeName::cubic; });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int most_threads = std::min(2, omp_get_max_threads());
+  for (int threads = 1; threads <= most_threads; ++threads) {
+    bandwidth[threads] = bench::triad_bandwidth(threads);
+    benchmark::AddCustomContext(fmt::format("triad_GB_per_s_{}_threads", threads),
+                                fmt::format("{:.2f}", 1e-9 * bandwidth[threads]));
+  }
+  flop_rate = bench::multiply_add_rate();
+  benchmark::AddCustomContext("multiply_add_Gflops_per_s_core", fmt::format("{:.2f}", 1e-9 * flop_rate));
+  add_main_table(most_threads);
+  add_features();
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
