@@ -39,7 +39,7 @@ void read_pm4_common(const CaseNode& node, Parameters& p) {
   p.c_z = node.number_or("c_z", "1", Range::non_negative(), p.c_z);
   p.n_d = node.number_or("n_d", "1", Range::non_negative(), p.n_d);
   p.phi_cv = node.number_or("phi_cv", "deg", Range::open(0.0, 60.0), p.phi_cv);
-  p.poisson = node.number_or("poisson", "1", Range::between(0.0, 0.4999), p.poisson);
+  p.poisson = node.number_or("poisson_ratio", "1", Range::between(0.0, 0.4999), p.poisson);
   p.C_GD = node.number_or("C_GD", "1", {1.0}, p.C_GD);
   p.m = node.number_or("m", "1", {0.0, 0.1, true, false}, p.m);
   p.compatibility = read_compatibility(node);
@@ -84,7 +84,7 @@ Pm4SiltParameters read_pm4silt(const CaseNode& node) {
 
 LinearElasticParameters read_linear_elastic(const CaseNode& node) {
   LinearElasticParameters p;
-  p.poisson = node.number_or("poisson", "1", Range::between(0.0, 0.4999), p.poisson);
+  p.poisson = node.number_or("poisson_ratio", "1", Range::between(0.0, 0.4999), p.poisson);
   p.shear_modulus = read_shear_modulus(node, p.poisson);
   p.density = node.number("density", "kg/m3", Range::positive());
   p.porosity = node.number_or("porosity", "1", {0.0, 1.0, false, true}, p.porosity);
@@ -93,7 +93,7 @@ LinearElasticParameters read_linear_elastic(const CaseNode& node) {
 
 MohrCoulombParameters read_mohr_coulomb(const CaseNode& node) {
   MohrCoulombParameters p;
-  p.poisson = node.number_or("poisson", "1", Range::between(0.0, 0.4999), p.poisson);
+  p.poisson = node.number_or("poisson_ratio", "1", Range::between(0.0, 0.4999), p.poisson);
   p.shear_modulus = read_shear_modulus(node, p.poisson);
   p.cohesion = node.number("cohesion", "Pa", Range::non_negative());
   p.friction_angle = node.number("friction_angle", "deg", Range::between(0.0, 60.0));

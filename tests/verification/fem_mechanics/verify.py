@@ -77,7 +77,7 @@ def history(folder):
 def patch_test(r):
     s = snapshots(r.run("patch_test/fem.json"))[-1]
     scene = r.scene("patch_test/fem.json")
-    young, nu = scene["materials"]["soil"]["youngs_modulus"], scene["materials"]["soil"]["poisson"]
+    young, nu = scene["materials"]["soil"]["youngs_modulus"], scene["materials"]["soil"]["poisson_ratio"]
     sxx, syy, sxy = 10e3, -7e3, 4e3  # the scene's tractions
     exx = (1 + nu) / young * ((1 - nu) * sxx - nu * syy)
     eyy = (1 + nu) / young * ((1 - nu) * syy - nu * sxx)
@@ -135,7 +135,7 @@ def consolidation_coefficient(young, nu, permeability, fluid_modulus, porosity):
 def terzaghi_series(r):
     scene = r.scene("terzaghi/fem.json")
     soil = scene["materials"]["soil"]
-    cv, share = consolidation_coefficient(soil["youngs_modulus"], soil["poisson"], 1e-6,
+    cv, share = consolidation_coefficient(soil["youngs_modulus"], soil["poisson_ratio"], 1e-6,
                                           scene["fluid"]["bulk_modulus"], soil["porosity"])
     error = 0.0
     for s, t in zip(snapshots(r.run("terzaghi/fem.json")), scene["output"]["snapshots"]):
@@ -295,7 +295,7 @@ def consolidation(r):
                     str(folder / "snapshot_t817.500.h5"), "-o", str(after), "--quiet", "--threads", "1"], check=True)
     s = State(after / "consolidated.h5")
     soil = r.scene("terzaghi/fem.json")["materials"]["soil"]
-    cv, share = consolidation_coefficient(soil["youngs_modulus"], soil["poisson"], 1e-6, 2.2e9, soil["porosity"])
+    cv, share = consolidation_coefficient(soil["youngs_modulus"], soil["poisson_ratio"], 1e-6, 2.2e9, soil["porosity"])
     wanted = share * terzaghi(10.0 - s.x[:, 1], cv * 24525 / 100.0, 10.0)
     error = np.abs(s.node["pore_pressure"] / 100e3 - wanted).max()
     return "terzaghi", "pore pressure after the consolidate command at T_v 0.3, over the load", error, 0.01
