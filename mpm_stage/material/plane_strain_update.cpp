@@ -102,7 +102,7 @@ double elasto_plastic(const MaterialConstants& k, const Columns& c, std::size_t 
   const double per_dt = dt > 0.0 ? 1.0 / dt : 0.0;
   const MohrCoulombSurface surface = Frictional ? mohr_coulomb_surface(k, k.sin_phi) : MohrCoulombSurface{};
   const double shear_flexibility = 0.5 / k.mu, volume_flexibility = 1.0 / (3.0 * k.bulk);
-  const auto body = [&](std::size_t i) {
+  const auto body = [&](std::size_t i) __attribute__((always_inline)) {
     const PlaneTrial t = elastic_trial(k, c.gxx[i], c.gxy[i], c.gyx[i], c.gyy[i], c.trace[i], c.shift[i], c.sxx[i],
                                        c.syy[i], c.szz[i], c.sxy[i]);
     const double R = std::sqrt(t.q * t.q + t.r * t.r);
