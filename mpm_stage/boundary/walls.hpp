@@ -9,8 +9,8 @@ namespace tailrun::mpm {
 
 enum class WallKind { open, fixed, slip, frictional };
 
-// What happens to particles beyond an open side of the domain.
-enum class LeavingParticles { error, remove };
+// What happens to particles beyond a side of the domain: the run stops, they are taken out, or they are held there.
+enum class LeavingParticles { error, remove, wall };
 
 template <int Dim>
 struct Walls {

@@ -120,10 +120,8 @@ void BlockGrid<Dim>::sort(Particles<Dim>& particles, std::span<const std::uint8_
   first_.clear();
   first_run_.clear();
   runs_.clear();
-  std::vector<std::uint64_t> occupied_keys;
   for (std::size_t k = 0; k < sorted.size(); ++k) {
     if (bounds[k * materials] == bounds[(k + 1) * materials]) continue;
-    occupied_keys.push_back(sorted[k]);
     occupied_index_.push_back(block_of_key<Dim>(sorted[k]));
     first_.push_back(bounds[k * materials]);
     first_run_.push_back(runs_.size());
@@ -134,7 +132,31 @@ void BlockGrid<Dim>::sort(Particles<Dim>& particles, std::span<const std::uint8_
   }
   first_.push_back(kept);
   first_run_.push_back(runs_.size());
+  connect();
+}
 
+template <int Dim>
+void BlockGrid<Dim>::restore(const std::vector<Index>& occupied, const std::vector<std::size_t>& first,
+                             const AlignedVector<std::int32_t>& material) {
+  occupied_index_ = occupied;
+  first_ = first;
+  first_run_.clear();
+  runs_.clear();
+  for (std::size_t b = 0; b < occupied.size(); ++b) {
+    first_run_.push_back(runs_.size());
+    for (std::size_t p = first[b]; p < first[b + 1]; ++p) {
+      if (p == first[b] || material[p] != material[p - 1]) runs_.push_back({p, p, material[p]});
+      runs_.back().end = p + 1;
+    }
+  }
+  first_run_.push_back(runs_.size());
+  connect();
+}
+
+template <int Dim>
+void BlockGrid<Dim>::connect() {
+  std::vector<std::uint64_t> occupied_keys;
+  for (const auto& index : occupied_index_) occupied_keys.push_back(block_key<Dim>(index));
   std::vector<std::uint64_t>& active_keys = active_keys_;
   active_keys.clear();
   active_keys.reserve(occupied_keys.size() * 2);

@@ -54,6 +54,11 @@ class BlockGrid {
   // overflow (more than 2^20 blocks from the origin) or its position is not finite.
   void sort(Particles<Dim>& particles, std::span<const std::uint8_t> keep = {});
 
+  // The grid of particles that were sorted before and have drifted since: `occupied` blocks, in the order that
+  // occupied_index() had, of which block b held the particles first[b] .. first[b + 1].
+  void restore(const std::vector<Index>& occupied, const std::vector<std::size_t>& first,
+               const AlignedVector<std::int32_t>& material);
+
   double cell_size() const { return cell_size_; }
   const std::array<double, Dim>& origin() const { return origin_; }
 
@@ -63,6 +68,8 @@ class BlockGrid {
   const Index& active_index(std::size_t a) const { return active_index_[a]; }
   std::size_t first_particle(std::size_t b) const { return first_[b]; }
   std::size_t last_particle(std::size_t b) const { return first_[b + 1]; }
+  const std::vector<Index>& occupied_indices() const { return occupied_index_; }
+  const std::vector<std::size_t>& first_particles() const { return first_; }
   std::span<const Run> runs(std::size_t b) const {
     return {runs_.data() + first_run_[b], first_run_[b + 1] - first_run_[b]};
   }
@@ -74,6 +81,8 @@ class BlockGrid {
   std::size_t bytes() const;
 
  private:
+  void connect();  // neighbours of the occupied blocks
+
   double cell_size_, shift_;
   std::array<double, Dim> origin_;
   std::vector<Index> occupied_index_, active_index_;

@@ -11,6 +11,8 @@
 
 #include <cmath>
 
+#include "mpm_stage/grid/simd.hpp"
+
 namespace tailrun::mpm {
 
 struct LinearShape {
@@ -20,13 +22,14 @@ struct LinearShape {
   static constexpr double apic = 0.0;
   static constexpr double mass_cutoff = 1e-6;
 
-  static inline int evaluate(double X, double* w, double* d, double* m) {
-    const int base = static_cast<int>(X);
-    const double f = X - base;
+  template <class Real>
+  [[gnu::always_inline]] static inline auto evaluate(Real X, Real* w, Real* d, Real* m) {
+    const auto base = whole(X);
+    const Real f = X - real(base);
     w[0] = 1.0 - f;
     w[1] = f;
-    d[0] = -1.0;
-    d[1] = 1.0;
+    d[0] = constant<Real>(-1.0);
+    d[1] = constant<Real>(1.0);
     m[0] = -w[0] * f;
     m[1] = w[1] * (1.0 - f);
     return base;
@@ -41,10 +44,11 @@ struct QuadraticShape {
   static constexpr double apic = 4.0;
   static constexpr double mass_cutoff = 1e-18;
 
-  static inline int evaluate(double X, double* w, double* d, double* m) {
-    const int centre = static_cast<int>(X + 0.5);
-    const double f = X - centre;
-    const double a = 0.5 - f, b = 0.5 + f;
+  template <class Real>
+  [[gnu::always_inline]] static inline auto evaluate(Real X, Real* w, Real* d, Real* m) {
+    const auto centre = whole(X + 0.5);
+    const Real f = X - real(centre);
+    const Real a = 0.5 - f, b = 0.5 + f;
     w[0] = 0.5 * a * a;
     w[1] = 0.75 - f * f;
     w[2] = 0.5 * b * b;
@@ -65,13 +69,14 @@ struct CubicShape {
   static constexpr double apic = 3.0;
   static constexpr double mass_cutoff = 1e-18;
 
-  static inline int evaluate(double X, double* w, double* d, double* m) {
-    const int cell = static_cast<int>(X);
-    const double f = X - cell, g = 1.0 - f;
-    w[0] = g * g * g / 6.0;
+  template <class Real>
+  [[gnu::always_inline]] static inline auto evaluate(Real X, Real* w, Real* d, Real* m) {
+    const auto cell = whole(X);
+    const Real f = X - real(cell), g = 1.0 - f;
+    w[0] = g * g * g * (1.0 / 6.0);
     w[1] = 2.0 / 3.0 - f * f * (1.0 - 0.5 * f);
     w[2] = 2.0 / 3.0 - g * g * (1.0 - 0.5 * g);
-    w[3] = f * f * f / 6.0;
+    w[3] = f * f * f * (1.0 / 6.0);
     d[0] = -0.5 * g * g;
     d[1] = -2.0 * f + 1.5 * f * f;
     d[2] = 2.0 * g - 1.5 * g * g;
@@ -88,6 +93,21 @@ struct GimpShape {
   static constexpr double shift = 0.5;
   static constexpr double apic = 0.0;
   static constexpr double mass_cutoff = 1e-8;
+
+  // Four particles, one after the other: the pieces of the function differ from lane to lane.
+  static inline Int4 evaluate(Vec4 X, Vec4* w, Vec4* d, Vec4* m) {
+    Int4 base{};
+    for (int lane = 0; lane < 4; ++lane) {
+      double weight[3], slope[3], moment[3];
+      base[lane] = evaluate(X[lane], weight, slope, moment);
+      for (int k = 0; k < 3; ++k) {
+        w[k][lane] = weight[k];
+        d[k][lane] = slope[k];
+        m[k][lane] = moment[k];
+      }
+    }
+    return base;
+  }
 
   static inline int evaluate(double X, double* w, double* d, double* m) {
     constexpr double l = 0.25;  // half the particle's width, in cells

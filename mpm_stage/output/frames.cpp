@@ -91,6 +91,11 @@ void FrameWriter::wait() {
   if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
 }
 
+void FrameWriter::restore(std::vector<std::string> names, std::vector<double> times) {
+  names_ = std::move(names);
+  times_ = std::move(times);
+}
+
 void FrameWriter::write(ParticleSet set) {
   wait();
   names_.push_back(fmt::format("runout_{:05d}.vtkhdf", names_.size()));

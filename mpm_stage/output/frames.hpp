@@ -27,6 +27,10 @@ class FrameWriter {
   // Waits for the frame before, then writes this one in the background. Throws what the frame before threw.
   void write(ParticleSet set);
   void wait();
+  // Goes on behind frames written before: their names and times (s).
+  void restore(std::vector<std::string> names, std::vector<double> times);
+  const std::vector<std::string>& names() const { return names_; }
+  const std::vector<double>& times() const { return times_; }
   std::size_t count() const { return names_.size(); }
   const std::string& last() const { return names_.back(); }
 

@@ -32,6 +32,7 @@ class FrontSeries {
   // Both thresholds of the criterion have held for its whole duration.
   bool at_rest(const RestCriterion& rest) const;
   const std::vector<FrontRow>& rows() const { return rows_; }
+  void restore(std::vector<FrontRow> rows) { rows_ = std::move(rows); }
   void write(const std::filesystem::path& path) const;
 
  private:

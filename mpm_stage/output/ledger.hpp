@@ -33,6 +33,11 @@ class Ledger {
   const LedgerRow& sample(double time, Solver<Dim>& solver, double limit);
 
   const std::vector<LedgerRow>& rows() const { return rows_; }
+  double largest_kinetic() const { return largest_kinetic_; }  // J, of all rows
+  void restore(std::vector<LedgerRow> rows, double largest_kinetic) {
+    rows_ = std::move(rows);
+    largest_kinetic_ = largest_kinetic;
+  }
   // The energy that the motion so far has turned over, J: the scale for the residual.
   double turnover() const;
   void write(const std::filesystem::path& path) const;

@@ -85,7 +85,7 @@ Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& reco
   const PhaseSeconds& s = solver.seconds();
   const LedgerRow &first = ledger.rows().front(), &last = ledger.rows().back();
   const FrontRow &f0 = front.rows().front(), &f1 = front.rows().back();
-  const double compute = s.grid + s.grid_to_particles + s.volumetric + s.stress + s.particles_to_grid + s.sort;
+  const double compute = s.grid + s.grid_to_particles + s.volumetric + s.stress_and_scatter + s.sort;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   double outermost = f0.robust_front;
@@ -98,6 +98,8 @@ Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& reco
   j["particles"] = solver.particles().count();
   j["particles_removed"] = solver.removed().size();
   j["removed_identities"] = solver.removed();
+  j["particles_held_at_sides"] = solver.held().size();
+  j["held_identities"] = solver.held();
   j["steps"] = record.steps;
   j["simulated_time_s"] = record.time;
   j["stop_reason"] = record.stop_reason;
@@ -136,8 +138,7 @@ Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& reco
                        {"grid", s.grid},
                        {"grid_to_particles", s.grid_to_particles},
                        {"volumetric_average", s.volumetric},
-                       {"stress", s.stress},
-                       {"particles_to_grid", s.particles_to_grid},
+                       {"stress_and_particles_to_grid", s.stress_and_scatter},
                        {"sort", s.sort},
                        {"output_and_sampling", record.output_seconds}};
   j["threads"] = omp_get_max_threads();

@@ -57,10 +57,11 @@ struct TerrainInput {
 struct Scene {
   std::string title;
   int dimension = 2;
-  double cell_size = 0.0;           // m
-  std::array<double, 3> origin{};   // m, a node
-  std::array<double, 3> gravity{};  // m/s2
-  double end_time = 0.0;            // s, counted from the start of this run
+  double cell_size = 0.0;            // m
+  std::array<double, 3> origin{};    // m, a node
+  std::array<double, 3> gravity{};   // m/s2
+  double end_time = 0.0;             // s, counted from the start of this run
+  double checkpoint_interval = 5.0;  // minutes of wall time; 0: none
   SolverOptions solver;
   RestCriterion rest;
   Walls<3> walls;

@@ -41,9 +41,10 @@ void read_domain(const CaseNode& root, Scene& scene) {
                                     : WallKind::frictional;
       if (wall.kind == WallKind::frictional) wall.friction = side->number("friction", "1", Range::non_negative());
     }
-  walls.leaving = node->choice_or("leaving_particles", {"error", "remove"}, "error") == "error"
-                      ? LeavingParticles::error
-                      : LeavingParticles::remove;
+  const std::string leaving = node->choice_or("leaving_particles", {"error", "remove", "wall"}, "error");
+  walls.leaving = leaving == "error"    ? LeavingParticles::error
+                  : leaving == "remove" ? LeavingParticles::remove
+                                        : LeavingParticles::wall;
 }
 
 void read_scheme(const CaseNode& root, Scene& scene) {
@@ -74,6 +75,8 @@ void read_time(const CaseNode& root, Scene& scene) {
   scene.solver.courant = time.number_or("courant", "1", {0.0, 1.5, true, false}, scene.solver.courant);
   scene.solver.maximum_step = time.number_or("maximum_step", "s", Range::positive(), 1e30);
   scene.energy_growth_limit = time.number_or("energy_growth_limit", "1", Range::positive(), scene.energy_growth_limit);
+  scene.checkpoint_interval =
+      time.number_or("checkpoint_interval", "min", Range::non_negative(), scene.checkpoint_interval);
   const CaseNode rest = time.object_or_empty("rest");
   scene.rest.active = rest.boolean_or("stop", true);
   scene.rest.speed = rest.number_or("speed", "m/s", Range::positive(), scene.rest.speed);

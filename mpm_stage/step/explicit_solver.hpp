@@ -1,10 +1,11 @@
 // The explicit step, symplectic Euler on the grid (Sulsky, Chen & Schreyer 1994), in the order
 //   nodes:      v = p / m, body forces, damping, walls, ground
-//   G2P:        velocities, affine velocities, gradients; particles move
+//   G2P:        velocities, affine velocities, gradients; particles move, and add their volumetric increments to the
+//               nodes' averages (the cure of locking)
 //   sort:       only when some particle may have left its block's margin
-//   average:    volumetric increments (the cure of locking)
-//   stress:     constitutive update, volumes
-//   P2G:        of the next step, with its time step
+//   average:    the nodes' averages
+//   stress:     constitutive update, volumes, and P2G of the next step, with its time step
+// Particles pass through the core twice a step: in G2P, and in stress and P2G, each block by block.
 // Every loop runs over blocks in parallel and writes what is its block's own; sums over blocks are taken in block order
 // afterwards, so results do not depend on the number of threads.
 #pragma once
@@ -55,6 +56,11 @@ class ExplicitSolver final : public Solver<Dim> {
       averaging_ = averaging_ || constants_.back().averaged;
     }
     limit_volumes();
+    if (walls.bounded && walls.leaving == LeavingParticles::wall) {
+      std::int32_t most = 0;
+      for (const std::int32_t identity : P_.identity) most = std::max(most, identity);
+      held_.assign(static_cast<std::size_t>(most) + 1, 0);
+    }
     for (int d = 0; d < Dim; ++d)
       for (int s = 0; s < 2; ++s) {
         auto& side = wall_nodes_.side[d][s];
@@ -77,6 +83,9 @@ class ExplicitSolver final : public Solver<Dim> {
     particles_to_grid();
   }
 
+  void resume(Particles<Dim> particles, const SolverState<Dim>& s) override;
+  SolverState<Dim> state() const override;
+
   StepReport step(const std::array<double, Dim>& body, const std::array<double, Dim>& inertial, double limit) override {
     StepReport report;
     const double dt = next_dt_;
@@ -84,15 +93,14 @@ class ExplicitSolver final : public Solver<Dim> {
     for (int d = 0; d < Dim; ++d) body_[d] = body[d] + inertial[d];
     update_grid(dt, body, inertial);
     gather(dt, report);
-    if (drift_ > 0.99 || leaving_) {
+    if (drift_ > largest_drift || leaving_) {
       sort();
       report.sorted = true;
     }
     next_dt_ = std::min({options_.courant * h_ / fastest_wave_, options_.maximum_step, viscous_limit_, limit});
     report.next_dt = next_dt_;
-    if (averaging_) average();
+    if (averaging_) average(report.sorted);
     update_stresses(dt);
-    particles_to_grid();
     return report;
   }
 
@@ -103,6 +111,12 @@ class ExplicitSolver final : public Solver<Dim> {
   const PhaseSeconds& seconds() const override { return seconds_; }
   std::array<double, Dim> boundary_impulse() const override { return impulse_; }
   std::vector<std::int32_t> removed() const override { return removed_; }
+  std::vector<std::int32_t> held() const override {
+    std::vector<std::int32_t> identities;
+    for (std::size_t k = 0; k < held_.size(); ++k)
+      if (held_[k]) identities.push_back(static_cast<std::int32_t>(k));
+    return identities;
+  }
   long sorts() const override { return sorts_; }
 
   double elastic_energy() const override {
@@ -125,6 +139,15 @@ class ExplicitSolver final : public Solver<Dim> {
   using Clock = std::chrono::steady_clock;
   static constexpr int tile_nodes = Tile<Dim, Shape>::nodes;
   static constexpr int block_nodes = Block<Dim>::nodes;
+  static constexpr double largest_drift = 0.99;  // cells, of a particle since the last sort: the tiles' margin
+  // In 2-D a node's four lanes have room for the velocity's change over the step beside the velocity.
+  static constexpr bool separate_change = Split && Dim == 3;
+
+  struct BlockMotion {
+    double far = 0.0, wave = 0.0, fast = 0.0, kinetic = 0.0;
+    double stopped = 0.0;  // J, taken from particles held at a side of the domain
+    bool outside = false;
+  };
 
   static void add_time(double& phase, Clock::time_point since) {
     phase += std::chrono::duration<double>(Clock::now() - since).count();
@@ -152,13 +175,21 @@ class ExplicitSolver final : public Solver<Dim> {
     return Transfer == TransferName::aflip ? 1.0 - std::min(1.0, options_.transfer_damping * dt * h1_ * fastest_wave_)
                                            : options_.flip_share;
   }
+  void add_change(std::size_t node, const std::array<double, Dim>& dv) {
+    for (int d = 0; d < Dim; ++d) (separate_change ? change_[node][d] : velocity_[node][2 + d]) += dv[d];
+  }
   void limit_volumes();
   void sort();
+  void lay_out();
+  void mind_sides(std::size_t b, BlockMotion& motion);
   void update_grid(double dt, const std::array<double, Dim>& body, const std::array<double, Dim>& inertial);
   void gather(double dt, StepReport& report);
-  void average();
+  void scatter_average(std::size_t b);
+  void average(bool sorted);
   void update_stresses(double dt);
+  StressWork update_stresses_of(std::size_t b, double dt, std::vector<double>& trace, std::vector<double>& shift);
   void particles_to_grid();
+  void scatter_block(std::size_t b);
   void scatter_ground_gaps(std::size_t b);
   void rub_ground();
   [[noreturn]] void fail(std::size_t begin, std::size_t end, const std::string& what) const;
@@ -187,10 +218,6 @@ class ExplicitSolver final : public Solver<Dim> {
   std::vector<NodeGrip> grip_;  // per active block
   std::vector<double> spread_;
   std::vector<GridSums<Dim>> grid_sums_;
-  struct BlockMotion {
-    double far = 0.0, wave = 0.0, fast = 0.0, kinetic = 0.0;
-    bool outside = false;
-  };
   std::vector<BlockMotion> motion_;
   std::vector<StressWork> stress_work_;  // per occupied block
 
@@ -198,6 +225,7 @@ class ExplicitSolver final : public Solver<Dim> {
   PhaseSeconds seconds_;
   std::array<double, Dim> impulse_{};
   std::vector<std::int32_t> removed_;
+  std::vector<std::uint8_t> held_;  // by identity; empty unless the domain's sides hold particles
   long sorts_ = 0;
 };
 

@@ -37,15 +37,36 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::sort() {
   }
   grid_.sort(P_, keep);
   if (grid_.occupied() == 0) throw ComputationError("no particle is left in the domain");
-  ground_.update(grid_);
-  mirrors_.update(grid_, wall_nodes_, Shape::support == 4 ? 2 : 1);
+  lay_out();
   ++sorts_;
   drift_ = 0.0;
   leaving_ = false;
+
+  // Wave speeds follow the lowest density of each material.
+  std::vector<double> density(constants_.size(), 1e300);
+  for (std::size_t p = 0; p < P_.count(); ++p)
+    density[P_.material[p]] = std::min(density[P_.material[p]], P_.mass[p] / P_.volume[p]);
+  wave_speed_.assign(constants_.size(), 0.0);
+  viscous_limit_ = 1e30;
+  for (std::size_t m = 0; m < constants_.size(); ++m) {
+    if (density[m] > 1e299) continue;
+    wave_speed_[m] = std::sqrt(constants_[m].wave_modulus() / density[m]);
+    if (constants_[m].model == Model::newtonian_fluid && constants_[m].consistency > 0.0)
+      viscous_limit_ =
+          std::min(viscous_limit_, options_.courant * h_ * h_ * density[m] / (2.0 * Dim * constants_[m].consistency));
+  }
+  add_time(seconds_.sort, since);
+}
+
+// Memory and neighbours of the grid's blocks.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
+  ground_.update(grid_);
+  mirrors_.update(grid_, wall_nodes_, Shape::support == 4 ? 2 : 1);
   tiles_.resize(grid_.occupied() * tile_nodes);
   if (Split) forces_.resize(tiles_.size());
   velocity_.resize(grid_.active() * block_nodes);
-  if (Split) change_.resize(velocity_.size());
+  if (separate_change) change_.resize(velocity_.size());
   if (mirrors_.any()) {
     sums_.resize(velocity_.size());
     if (Split) force_sums_.resize(velocity_.size());
@@ -62,21 +83,6 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::sort() {
   grid_sums_.resize(grid_.active());
   motion_.resize(grid_.occupied());
   stress_work_.resize(grid_.occupied());
-
-  // Wave speeds follow the lowest density of each material.
-  std::vector<double> density(constants_.size(), 1e300);
-  for (std::size_t p = 0; p < P_.count(); ++p)
-    density[P_.material[p]] = std::min(density[P_.material[p]], P_.mass[p] / P_.volume[p]);
-  wave_speed_.assign(constants_.size(), 0.0);
-  viscous_limit_ = 1e30;
-  for (std::size_t m = 0; m < constants_.size(); ++m) {
-    if (density[m] > 1e299) continue;
-    wave_speed_[m] = std::sqrt(constants_[m].wave_modulus() / density[m]);
-    if (constants_[m].model == Model::newtonian_fluid && constants_[m].consistency > 0.0)
-      viscous_limit_ =
-          std::min(viscous_limit_, options_.courant * h_ * h_ * density[m] / (2.0 * Dim * constants_[m].consistency));
-  }
-  add_time(seconds_.sort, since);
 }
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
@@ -120,7 +126,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
       Vec4& out = velocity_[a * block_nodes + n];
       if (m <= mass_cutoff_) {
         out = Vec4{};
-        if constexpr (Split) change_[a * block_nodes + n] = Vec4{};
+        if constexpr (separate_change) change_[a * block_nodes + n] = Vec4{};
         continue;
       }
       std::array<double, Dim> v, before{};
@@ -149,7 +155,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
       out = node_velocity<Dim>(v.data());
       if constexpr (Split) {
         for (int d = 0; d < Dim; ++d) before[d] = v[d] - before[d];
-        change_[a * block_nodes + n] = node_velocity<Dim>(before.data());
+        if constexpr (separate_change) change_[a * block_nodes + n] = Vec4{};
+        add_change(a * block_nodes + n, before);
       }
     }
     grid_sums_[a] = sums;
@@ -157,7 +164,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
   if (ground_.any()) rub_ground();
   if (mirrored) {
     mirrors_.reflect(velocity_.data());
-    if constexpr (Split) mirrors_.reflect(change_.data());
+    if constexpr (separate_change) mirrors_.reflect(change_.data());
   }
   for (const auto& s : grid_sums_) {
     work_.friction += s.friction;
@@ -188,8 +195,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_ground() {
         lost[d] = v[d] - lost[d];
         grid_sums_[a].impulse[d] += grip_[k].mass * lost[d];
       }
-      velocity_[k] = node_velocity<Dim>(v.data());
-      if constexpr (Split) change_[k] += node_velocity<Dim>(lost.data());
+      for (int d = 0; d < Dim; ++d) velocity_[k][d] = v[d];
+      if constexpr (Split) add_change(k, lost);
     }
   }
 }
@@ -201,9 +208,9 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& 
   const GridToParticles s{dt, h1_, flip_share(dt)};
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t b = 0; b < grid_.occupied(); ++b) {
-    Vec4 tile[tile_nodes], change[Flip ? tile_nodes : 1];
+    Vec4 tile[tile_nodes], change[Flip && separate_change ? tile_nodes : 1];
     load_tile<Dim, Shape>(grid_, b, velocity_.data(), tile);
-    if constexpr (Flip) load_tile<Dim, Shape>(grid_, b, change_.data(), change);
+    if constexpr (Flip && separate_change) load_tile<Dim, Shape>(grid_, b, change_.data(), change);
     BlockMotion motion;
     for (const Run& run : grid_.runs(b)) {
       const MotionExtremes e =
@@ -213,19 +220,10 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& 
       motion.wave = std::max(motion.wave, wave_speed_[run.material] + std::sqrt(e.speed_squared));
       motion.kinetic += e.kinetic;
     }
-    if (walls_.bounded) {
-      // Only blocks at the domain's edge can lose particles.
-      bool edge = false;
-      for (int d = 0; d < Dim; ++d) {
-        const double low = corner(b)[d], high = low + Tile<Dim, Shape>::side * h_;
-        edge = edge || low < walls_.low[d] || high > walls_.high[d];
-      }
-      if (edge)
-        for (std::size_t p = grid_.first_particle(b); p < grid_.last_particle(b); ++p)
-          for (int d = 0; d < Dim; ++d)
-            motion.outside = motion.outside || P_.position[d][p] < walls_.low[d] || P_.position[d][p] > walls_.high[d];
-    }
+    if (walls_.bounded) mind_sides(b, motion);
     motion_[b] = motion;
+    // The block's particles are still near the core. Should it be time to sort, this is done again after it.
+    if (averaging_ && std::isfinite(motion.kinetic) && drift_ + motion.far * h1_ <= largest_drift) scatter_average(b);
   }
   double far = 0.0, fast = 0.0;
   fastest_wave_ = 0.0;
@@ -242,22 +240,57 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& 
     fastest_wave_ = std::max(fastest_wave_, m.wave);
     report.kinetic_energy += m.kinetic;
     leaving_ = leaving_ || m.outside;
+    work_.removed += m.stopped;
   }
   report.maximum_speed = std::sqrt(fast);
   drift_ += far * h1_;
   add_time(seconds_.grid_to_particles, since);
 }
 
+// Particles beyond a side of the domain: held there, or noticed, so that the sort deals with them.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::average() {
+void ExplicitSolver<Dim, Shape, Split, Transfer>::mind_sides(std::size_t b, BlockMotion& motion) {
+  // Only blocks at the domain's edge can lose particles.
+  bool edge = false;
+  for (int d = 0; d < Dim; ++d) {
+    const double low = corner(b)[d], high = low + Tile<Dim, Shape>::side * h_;
+    edge = edge || low < walls_.low[d] || high > walls_.high[d];
+  }
+  if (!edge) return;
+  for (std::size_t p = grid_.first_particle(b); p < grid_.last_particle(b); ++p)
+    for (int d = 0; d < Dim; ++d) {
+      double &x = P_.position[d][p], &v = P_.velocity[d][p];
+      const bool under = x<walls_.low[d], over = x> walls_.high[d];
+      if (!under && !over) continue;
+      if (walls_.leaving != LeavingParticles::wall) {
+        motion.outside = true;
+        continue;
+      }
+      x = under ? walls_.low[d] : walls_.high[d];
+      held_[static_cast<std::size_t>(P_.identity[p])] = 1;
+      if (under ? v < 0.0 : v > 0.0) {
+        motion.stopped += 0.5 * P_.mass[p] * v * v;
+        motion.kinetic -= 0.5 * P_.mass[p] * v * v;
+        v = 0.0;
+      }
+    }
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::scatter_average(std::size_t b) {
+  AveragedNode* tile = averaged_tiles_.data() + b * tile_nodes;
+  std::fill(tile, tile + tile_nodes, AveragedNode{});
+  for (const Run& run : grid_.runs(b))
+    if (constants_[run.material].averaged)
+      scatter_volumetric<Dim, Shape>(P_, run.begin, run.end, corner(b), h1_, body_, tile);
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::average(bool sorted) {
   const auto since = Clock::now();
+  if (sorted) {
 #pragma omp parallel for schedule(dynamic, 4)
-  for (std::size_t b = 0; b < grid_.occupied(); ++b) {
-    AveragedNode* tile = averaged_tiles_.data() + b * tile_nodes;
-    std::fill(tile, tile + tile_nodes, AveragedNode{});
-    for (const Run& run : grid_.runs(b))
-      if (constants_[run.material].averaged)
-        scatter_volumetric<Dim, Shape>(P_, run.begin, run.end, corner(b), h1_, body_, tile);
+    for (std::size_t b = 0; b < grid_.occupied(); ++b) scatter_average(b);
   }
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t a = 0; a < grid_.active(); ++a) {
@@ -276,32 +309,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses(double dt) {
     std::vector<double> trace, shift;
 #pragma omp for schedule(dynamic, 4)
     for (std::size_t b = 0; b < grid_.occupied(); ++b) {
-      NodeMean mean[tile_nodes];
-      if (averaging_) load_tile<Dim, Shape>(grid_, b, averaged_.data(), mean);
-      StressWork work;
-      for (const Run& run : grid_.runs(b)) {
-        trace.resize(std::max(trace.size(), run.end - run.begin));
-        shift.resize(trace.size(), 0.0);
-        if (constants_[run.material].averaged)
-          gather_volumetric<Dim, Shape>(P_, run.begin, run.end, corner(b), h1_, relaxation(run.material, dt), mean,
-                                        trace.data(), shift.data());
-        else
-          for (std::size_t p = run.begin; p < run.end; ++p) {
-            trace[p - run.begin] = trace_of(P_, p);
-            shift[p - run.begin] = 0.0;
-          }
-        bool inverted = false;
-        for (std::size_t i = 0; i < run.end - run.begin; ++i) inverted |= !(std::fabs(trace[i]) < 1.0);
-        if (inverted) {
-          work.dissipated = std::nan("");
-          break;
-        }
-        const StressWork of_run =
-            update_stress(constants_[run.material], P_, run.begin, run.end, trace.data(), shift.data(), dt);
-        work.dissipated += of_run.dissipated;
-        work.pore_pressure += of_run.pore_pressure;
-      }
-      stress_work_[b] = work;
+      stress_work_[b] = update_stresses_of(b, dt, trace, shift);
+      if (std::isfinite(stress_work_[b].dissipated)) scatter_block(b);
     }
   }
   for (std::size_t b = 0; b < grid_.occupied(); ++b) {
@@ -311,27 +320,59 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses(double dt) {
     work_.plastic += stress_work_[b].dissipated;
     work_.pore_pressure += stress_work_[b].pore_pressure;
   }
-  add_time(seconds_.stress, since);
+  add_time(seconds_.stress_and_scatter, since);
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+StressWork ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses_of(std::size_t b, double dt,
+                                                                           std::vector<double>& trace,
+                                                                           std::vector<double>& shift) {
+  NodeMean mean[tile_nodes];
+  bool loaded = false;
+  StressWork work;
+  for (const Run& run : grid_.runs(b)) {
+    trace.resize(std::max(trace.size(), run.end - run.begin));
+    shift.resize(trace.size());
+    if (constants_[run.material].averaged) {
+      if (!loaded) load_tile<Dim, Shape>(grid_, b, averaged_.data(), mean);
+      loaded = true;
+      gather_volumetric<Dim, Shape>(P_, run.begin, run.end, corner(b), h1_, relaxation(run.material, dt), mean,
+                                    trace.data(), shift.data());
+    } else {
+      for (std::size_t p = run.begin; p < run.end; ++p) {
+        trace[p - run.begin] = trace_of(P_, p);
+        shift[p - run.begin] = 0.0;
+      }
+    }
+    bool inverted = false;
+    for (std::size_t i = 0; i < run.end - run.begin; ++i) inverted |= !(std::fabs(trace[i]) < 1.0);
+    if (inverted) return {std::nan(""), 0.0};
+    const StressWork of_run =
+        update_stress(constants_[run.material], P_, run.begin, run.end, trace.data(), shift.data(), dt);
+    work.dissipated += of_run.dissipated;
+    work.pore_pressure += of_run.pore_pressure;
+  }
+  return work;
 }
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::particles_to_grid() {
-  const auto since = Clock::now();
-  const bool pore = !P_.pore_pressure.empty();
 #pragma omp parallel for schedule(dynamic, 4)
-  for (std::size_t b = 0; b < grid_.occupied(); ++b) {
-    Vec4* tile = tiles_.data() + b * tile_nodes;
-    Vec4* force = Split ? forces_.data() + b * tile_nodes : nullptr;
-    std::fill(tile, tile + tile_nodes, Vec4{});
-    if constexpr (Split) std::fill(force, force + tile_nodes, Vec4{});
-    const std::size_t begin = grid_.first_particle(b), end = grid_.last_particle(b);
-    if (pore)
-      mpm::particles_to_grid<Shape, Split, true>(next_dt_, h1_, corner(b), P_, begin, end, tile, force);
-    else
-      mpm::particles_to_grid<Shape, Split, false>(next_dt_, h1_, corner(b), P_, begin, end, tile, force);
-    if (ground_.any()) scatter_ground_gaps(b);
-  }
-  add_time(seconds_.particles_to_grid, since);
+  for (std::size_t b = 0; b < grid_.occupied(); ++b) scatter_block(b);
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::scatter_block(std::size_t b) {
+  Vec4* tile = tiles_.data() + b * tile_nodes;
+  Vec4* force = Split ? forces_.data() + b * tile_nodes : nullptr;
+  std::fill(tile, tile + tile_nodes, Vec4{});
+  if constexpr (Split) std::fill(force, force + tile_nodes, Vec4{});
+  const std::size_t begin = grid_.first_particle(b), end = grid_.last_particle(b);
+  if (P_.pore_pressure.empty())
+    mpm::particles_to_grid<Shape, Split, false>(next_dt_, h1_, corner(b), P_, begin, end, tile, force);
+  else
+    mpm::particles_to_grid<Shape, Split, true>(next_dt_, h1_, corner(b), P_, begin, end, tile, force);
+  if (ground_.any()) scatter_ground_gaps(b);
 }
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
@@ -344,6 +385,45 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::scatter_ground_gaps(std::size_
       grid_, b, [this](std::size_t a) { return ground_.of_block(a) ? ground_.distances(a) : nullptr; }, no_gap_known,
       distance);
   scatter_gaps<Dim, Shape>(P_, grid_.first_particle(b), grid_.last_particle(b), corner(b), h1_, distance, gap);
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+SolverState<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::state() const {
+  SolverState<Dim> s;
+  s.blocks = grid_.occupied_indices();
+  s.first = grid_.first_particles();
+  s.wave_speed = wave_speed_;
+  s.next_dt = next_dt_;
+  s.viscous_limit = viscous_limit_;
+  s.drift = drift_;
+  s.fastest_wave = fastest_wave_;
+  s.sorts = sorts_;
+  s.work = work_;
+  s.seconds = seconds_;
+  s.impulse = impulse_;
+  s.removed = removed_;
+  s.held = held();
+  return s;
+}
+
+// The nodes' sums are not kept: P2G makes the same ones again.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::resume(Particles<Dim> particles, const SolverState<Dim>& s) {
+  P_ = std::move(particles);
+  grid_.restore(s.blocks, s.first, P_.material);
+  lay_out();
+  wave_speed_ = s.wave_speed;
+  next_dt_ = s.next_dt;
+  viscous_limit_ = s.viscous_limit;
+  drift_ = s.drift;
+  fastest_wave_ = s.fastest_wave;
+  sorts_ = s.sorts;
+  work_ = s.work;
+  seconds_ = s.seconds;
+  impulse_ = s.impulse;
+  removed_ = s.removed;
+  for (const std::int32_t k : s.held) held_[static_cast<std::size_t>(k)] = 1;
+  particles_to_grid();
 }
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>

@@ -42,7 +42,7 @@ struct WorkDone {
 
 // Wall-clock seconds by phase since the start.
 struct PhaseSeconds {
-  double grid = 0.0, grid_to_particles = 0.0, volumetric = 0.0, stress = 0.0, particles_to_grid = 0.0, sort = 0.0;
+  double grid = 0.0, grid_to_particles = 0.0, volumetric = 0.0, stress_and_scatter = 0.0, sort = 0.0;
 };
 
 struct StepReport {
@@ -53,6 +53,22 @@ struct StepReport {
   bool sorted = false;
 };
 
+// What a solver has to remember besides its particles to go on from where it was, bit for bit.
+template <int Dim>
+struct SolverState {
+  std::vector<std::array<int, Dim>> blocks;   // of the last sort, in the order of the particles
+  std::vector<std::size_t> first;             // first particle of each block, and their number at the end
+  std::vector<double> wave_speed;             // m/s, by material
+  double next_dt = 0.0, viscous_limit = 0.0;  // s
+  double drift = 0.0;                         // cells, since the last sort
+  double fastest_wave = 0.0;                  // m/s
+  long sorts = 0;
+  WorkDone work;
+  PhaseSeconds seconds;
+  std::array<double, Dim> impulse{};        // N s
+  std::vector<std::int32_t> removed, held;  // identities
+};
+
 template <int Dim>
 class Solver {
  public:
@@ -60,6 +76,9 @@ class Solver {
 
   // Sorts the particles and puts them on the grid; the first step will be at most `limit` (s) long.
   virtual void start(double limit) = 0;
+  // Takes the place of start(): goes on with `particles`, in the order in which particles() gave them, from `state`.
+  virtual void resume(Particles<Dim> particles, const SolverState<Dim>& state) = 0;
+  virtual SolverState<Dim> state() const = 0;
   // Makes one step with body acceleration `body` (gravity, m/s2) and `inertial` (minus the base acceleration); the one
   // after it will be at most `limit` long. Throws ComputationError with the particle, its position, material and the
   // cause when a value is not finite, a particle inverts or moves more than a cell.
@@ -76,6 +95,7 @@ class Solver {
   virtual std::array<double, Dim> boundary_impulse() const = 0;  // N s since the start, on the particles
   virtual std::size_t grid_bytes() const = 0;
   virtual std::vector<std::int32_t> removed() const = 0;  // identities of particles that left
+  virtual std::vector<std::int32_t> held() const = 0;     // identities of particles held at a side of the domain
   virtual long sorts() const = 0;
 };
 

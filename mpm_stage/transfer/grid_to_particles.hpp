@@ -1,8 +1,6 @@
 // G2P: particles take velocity, affine velocity and displacement gradient from the grid, and move.
 //
-// One-dimensional sums are nested (x innermost), so each node is read once per particle and used as a vector of all its
-// velocity components; in 2-D both halves of a node's four lanes hold the velocity, and one multiply-add forms the
-// weighted velocity and its x-derivative together.
+// One-dimensional sums are nested (x innermost), so each node is read once per particle.
 #pragma once
 
 #include <algorithm>
@@ -14,19 +12,21 @@
 
 namespace tailrun::mpm {
 
-// Node velocity as the transfer wants it: (vx, vy, vx, vy) in 2-D, (vx, vy, vz, 0) in 3-D.
+// Node velocity as the transfer wants it: (vx, vy, 0, 0) in 2-D, where the last two are for the velocity's change over
+// the step, and (vx, vy, vz, 0) in 3-D.
 template <int Dim>
 inline Vec4 node_velocity(const double* v) {
   if constexpr (Dim == 2)
-    return Vec4{v[0], v[1], v[0], v[1]};
+    return Vec4{v[0], v[1], 0.0, 0.0};
   else
     return Vec4{v[0], v[1], v[2], 0.0};
 }
 
 // Midpoint gradient G = A (I + A/2)^-1 of the increment F = I + A, A = dt grad v: sym(G) is a second-order strain
 // increment that vanishes in any rigid rotation, skew(G) the Hughes & Winget (1980) rotation.
-[[gnu::always_inline]] inline std::array<double, 4> midpoint_gradient(const std::array<double, 4>& A) {
-  const double det = A[0] * A[3] - A[1] * A[2], r = 1.0 / (1.0 + 0.5 * (A[0] + A[3]) + 0.25 * det);
+template <class Real>
+[[gnu::always_inline]] inline std::array<Real, 4> midpoint_gradient(const std::array<Real, 4>& A) {
+  const Real det = A[0] * A[3] - A[1] * A[2], r = 1.0 / (1.0 + 0.5 * (A[0] + A[3]) + 0.25 * det);
   return {(A[0] + 0.5 * det) * r, A[1] * r, A[2] * r, (A[3] + 0.5 * det) * r};
 }
 
@@ -60,104 +60,81 @@ struct MotionExtremes {
   double kinetic = 0.0;
 };
 
-// `velocity` (and `change`, the velocity's change over the step, for FLIP) is the tile, `corner` (m) its node 0.
+// Plane strain. `node` is the tile, `corner` (m) its node 0; a node is (vx, vy, change of vx, change of vy), of which
+// the changes over the step count for FLIP alone. Four particles at a time: their nodes are transposed as they are
+// read.
 template <class Shape, bool Flip, bool Affine>
-MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restrict velocity,
-                                 const Vec4* __restrict change, const std::array<double, 2>& corner, Particles<2>& P,
-                                 std::size_t begin, std::size_t end) {
+MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restrict node, const Vec4*,
+                                 const std::array<double, 2>& corner, Particles<2>& P, std::size_t begin,
+                                 std::size_t end) {
   constexpr int S = Shape::support, T = Tile<2, Shape>::side;
-  using Vec2 = double __attribute__((vector_size(16)));
-  double* __restrict x = P.position[0].data();
-  double* __restrict y = P.position[1].data();
-  double* __restrict vx = P.velocity[0].data();
-  double* __restrict vy = P.velocity[1].data();
+  constexpr bool Moments = Affine && Shape::apic > 0.0;
   const double h1 = s.inverse_cell, dt = s.dt, A0 = dt * h1, C0 = Shape::apic * h1;
-  double* __restrict gxx = P.gradient[0].data();
-  double* __restrict gxy = P.gradient[1].data();
-  double* __restrict gyx = P.gradient[2].data();
-  double* __restrict gyy = P.gradient[3].data();
-  double* __restrict cxx = Affine ? P.affine[0].data() : nullptr;
-  double* __restrict cxy = Affine ? P.affine[1].data() : nullptr;
-  double* __restrict cyx = Affine ? P.affine[2].data() : nullptr;
-  double* __restrict cyy = Affine ? P.affine[3].data() : nullptr;
-  double far = 0.0;
-  for (std::size_t p = begin; p < end; ++p) {
-    double wx[S], dx[S], mx[S], wy[S], dy[S], my[S];
-    const int i0 = Shape::evaluate((x[p] - corner[0]) * h1, wx, dx, mx);
-    const int j0 = Shape::evaluate((y[p] - corner[1]) * h1, wy, dy, my);
-    const Vec4* node = velocity + j0 * T + i0;
-    Vec4 v_vx = {}, vy_c = {};
-    Vec2 cx = {};
-    for (int j = 0; j < S; ++j, node += T) {
-      Vec4 row = {};
-      Vec2 moment = {};
+  Vec4 far = {}, fast = {}, kinetic = {};
+  for (std::size_t p = begin; p < end; p += 4) {
+    const Group g(p, end);
+    const Vec4 x = g.read(P.position[0].data()), y = g.read(P.position[1].data());
+    Vec4 wx[S], dx[S], mx[S], wy[S], dy[S], my[S];
+    const Int4 i0 = Shape::evaluate((x - corner[0]) * h1, wx, dx, mx);
+    const Int4 j0 = Shape::evaluate((y - corner[1]) * h1, wy, dy, my);
+    const Int4 at = j0 * T + i0;
+    const Vec4 *n0 = node + at[0], *n1 = node + at[1], *n2 = node + at[2], *n3 = node + at[3];
+    Vec4 v[2] = {}, gx[2] = {}, gy[2] = {}, cx[2] = {}, cy[2] = {}, change[2] = {};
+    for (int j = 0; j < S; ++j) {
+      Vec4 row[2] = {}, slope[2] = {}, moment[2] = {}, row_change[2] = {};
       for (int i = 0; i < S; ++i) {
-        row += node[i] * Vec4{wx[i], wx[i], dx[i], dx[i]};
-        if constexpr (Affine && Shape::apic > 0.0) moment += Vec2{node[i][0], node[i][1]} * Vec2{mx[i], mx[i]};
+        const int k = j * T + i;
+        Vec4 u[2];
+        const auto lanes = [&](int first, Vec4& a, Vec4& b) {
+          const auto start = [&](const Vec4* n) { return reinterpret_cast<const double*>(n + k) + first; };
+          transpose_pairs(start(n0), start(n1), start(n2), start(n3), a, b);
+        };
+        lanes(0, u[0], u[1]);
+        for (int c = 0; c < 2; ++c) {
+          row[c] += u[c] * wx[i];
+          slope[c] += u[c] * dx[i];
+          if constexpr (Moments) moment[c] += u[c] * mx[i];
+        }
+        if constexpr (Flip) {
+          lanes(2, u[0], u[1]);
+          for (int c = 0; c < 2; ++c) row_change[c] += u[c] * wx[i];
+        }
       }
-      v_vx += row * splat(wy[j]);
-      vy_c += __builtin_shuffle(row, row, (__attribute__((vector_size(32))) long){0, 1, 0, 1}) *
-              Vec4{dy[j], dy[j], my[j], my[j]};
-      if constexpr (Affine && Shape::apic > 0.0) cx += moment * Vec2{wy[j], wy[j]};
-    }
-    gxx[p] = A0 * v_vx[2];
-    gxy[p] = A0 * vy_c[0];
-    gyx[p] = A0 * v_vx[3];
-    gyy[p] = A0 * vy_c[1];
-    if constexpr (Flip) {
-      Vec4 dv = {};
-      const Vec4* c = change + j0 * T + i0;
-      for (int j = 0; j < S; ++j, c += T)
-        for (int i = 0; i < S; ++i) dv += c[i] * splat(wx[i] * wy[j]);
-      vx[p] = s.flip * (vx[p] + dv[0]) + (1.0 - s.flip) * v_vx[0];
-      vy[p] = s.flip * (vy[p] + dv[1]) + (1.0 - s.flip) * v_vx[1];
-    } else {
-      vx[p] = v_vx[0];
-      vy[p] = v_vx[1];
-    }
-    if constexpr (Affine) {
-      if constexpr (Shape::apic > 0.0) {
-        cxx[p] = C0 * cx[0];
-        cxy[p] = C0 * vy_c[2];
-        cyx[p] = C0 * cx[1];
-        cyy[p] = C0 * vy_c[3];
-      } else {
-        cxx[p] = h1 * v_vx[2];
-        cxy[p] = h1 * vy_c[0];
-        cyx[p] = h1 * v_vx[3];
-        cyy[p] = h1 * vy_c[1];
+      for (int c = 0; c < 2; ++c) {
+        v[c] += row[c] * wy[j];
+        gx[c] += slope[c] * wy[j];
+        gy[c] += row[c] * dy[j];
+        if constexpr (Moments) {
+          cx[c] += moment[c] * wy[j];
+          cy[c] += row[c] * my[j];
+        }
+        if constexpr (Flip) change[c] += row_change[c] * wy[j];
       }
     }
-    if constexpr (Flip) {
-      const double ux = dt * v_vx[0], uy = dt * v_vx[1];
-      x[p] += ux;
-      y[p] += uy;
-      far = std::max(far, std::max(std::fabs(ux), std::fabs(uy)));
+    if constexpr (Affine)
+      for (int c = 0; c < 2; ++c) {
+        g.write(P.affine[2 * c].data(), Moments ? C0 * cx[c] : h1 * gx[c]);
+        g.write(P.affine[2 * c + 1].data(), Moments ? C0 * cy[c] : h1 * gy[c]);
+      }
+    const auto G = midpoint_gradient(std::array<Vec4, 4>{A0 * gx[0], A0 * gy[0], A0 * gx[1], A0 * gy[1]});
+    for (int k = 0; k < 4; ++k) g.write(P.gradient[k].data(), G[k]);
+    const Vec4 ux = dt * v[0], uy = dt * v[1];
+    g.write(P.position[0].data(), x + ux);
+    g.write(P.position[1].data(), y + uy);
+    Vec4 speed = {};
+    for (int c = 0; c < 2; ++c) {
+      if constexpr (Flip) v[c] = s.flip * (g.read(P.velocity[c].data()) + change[c]) + (1.0 - s.flip) * v[c];
+      g.write(P.velocity[c].data(), v[c]);
+      speed += v[c] * v[c];
     }
+    far = larger(far, larger(magnitude(ux), magnitude(uy)));
+    fast = larger(fast, speed);
+    kinetic += g.only(0.5 * g.read(P.mass.data()) * speed);
   }
-  // What is the same for every particle, as vector code: motion, midpoint gradient and the extremes.
-  double fast = 0.0, kinetic = 0.0;
-  const double* __restrict mass = P.mass.data();
-#pragma omp simd reduction(max : far, fast) reduction(+ : kinetic)
-  for (std::size_t p = begin; p < end; ++p) {
-    const double ux = dt * vx[p], uy = dt * vy[p];
-    if constexpr (!Flip) {
-      x[p] += ux;
-      y[p] += uy;
-      far = std::max(far, std::max(std::fabs(ux), std::fabs(uy)));
-    }
-    const auto G = midpoint_gradient(std::array<double, 4>{gxx[p], gxy[p], gyx[p], gyy[p]});
-    gxx[p] = G[0];
-    gxy[p] = G[1];
-    gyx[p] = G[2];
-    gyy[p] = G[3];
-    const double speed = vx[p] * vx[p] + vy[p] * vy[p];
-    fast = std::max(fast, speed);
-    kinetic += 0.5 * mass[p] * speed;
-  }
-  return {far, fast, kinetic};
+  return {largest_lane(far), largest_lane(fast), (kinetic[0] + kinetic[1]) + (kinetic[2] + kinetic[3])};
 }
 
+// In three dimensions `velocity` and `change` (for FLIP) are tiles of their own.
 template <class Shape, bool Flip, bool Affine>
 MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restrict velocity,
                                  const Vec4* __restrict change, const std::array<double, 3>& corner, Particles<3>& P,

@@ -23,7 +23,7 @@ namespace tailrun::mpm {
 // A node's sums: volume-weighted increment, volume, volume-weighted mean stress.
 using AveragedNode = Vec4;
 // A node's averages: increment (1) and mean stress (Pa).
-using NodeMean = double __attribute__((vector_size(16)));
+using NodeMean = Vec2;
 
 template <int Dim>
 inline double trace_of(const Particles<Dim>& P, std::size_t p) {
@@ -32,29 +32,28 @@ inline double trace_of(const Particles<Dim>& P, std::size_t p) {
   return t;
 }
 
-// Linear weights of the 2^Dim nodes around X (cells from the tile's node 0).
+// Linear weights of the 2^Dim nodes around X (cells from the tile's node 0) of four particles.
 template <int Dim, int Side>
 struct LinearCell {
-  std::size_t first;
-  double weight[1 << Dim], fraction[Dim];
+  Int4 first{};
+  Vec4 weight[1 << Dim], fraction[Dim];
 
-  LinearCell(const Particles<Dim>& P, std::size_t p, const std::array<double, Dim>& corner, double h1) {
-    double* f = fraction;
-    first = 0;
-    std::size_t stride = 1;
+  [[gnu::always_inline]] LinearCell(const Particles<Dim>& P, const Group& g, const std::array<double, Dim>& corner,
+                                    double h1) {
+    int stride = 1;
     for (int d = 0; d < Dim; ++d, stride *= Side) {
-      const double X = (P.position[d][p] - corner[d]) * h1;
-      const int cell = static_cast<int>(X);
-      f[d] = X - cell;
-      first += static_cast<std::size_t>(cell) * stride;
+      const Vec4 X = (g.read(P.position[d].data()) - corner[d]) * h1;
+      const Int4 cell = whole(X);
+      fraction[d] = X - real(cell);
+      first += cell * stride;
     }
     for (int n = 0; n < (1 << Dim); ++n) {
-      weight[n] = 1.0;
-      for (int d = 0; d < Dim; ++d) weight[n] *= (n >> d & 1) ? f[d] : 1.0 - f[d];
+      weight[n] = splat(1.0);
+      for (int d = 0; d < Dim; ++d) weight[n] *= (n >> d & 1) ? fraction[d] : 1.0 - fraction[d];
     }
   }
-  static constexpr std::size_t offset(int n) {
-    std::size_t o = 0, stride = 1;
+  static constexpr int offset(int n) {
+    int o = 0, stride = 1;
     for (int d = 0; d < Dim; ++d, stride *= Side) o += (n >> d & 1) ? stride : 0;
     return o;
   }
@@ -62,9 +61,9 @@ struct LinearCell {
 
 // Total mean stress, Pa.
 template <int Dim>
-inline double mean_stress(const Particles<Dim>& P, std::size_t p) {
-  const double m = (P.stress[0][p] + P.stress[1][p] + P.stress[2][p]) * (1.0 / 3.0);
-  return P.pore_pressure.empty() ? m : m - P.pore_pressure[p];
+[[gnu::always_inline]] inline Vec4 mean_stress(const Particles<Dim>& P, const Group& g) {
+  const Vec4 m = (g.read(P.stress[0].data()) + g.read(P.stress[1].data()) + g.read(P.stress[2].data())) * (1.0 / 3.0);
+  return P.pore_pressure.empty() ? m : m - g.read(P.pore_pressure.data());
 }
 
 // `body` is the body acceleration, m/s2.
@@ -73,20 +72,27 @@ void scatter_volumetric(const Particles<Dim>& P, std::size_t begin, std::size_t 
                         const std::array<double, Dim>& corner, double h1, const std::array<double, Dim>& body,
                         AveragedNode* tile) {
   const double h = 1.0 / h1;
-  for (std::size_t p = begin; p < end; ++p) {
-    const LinearCell<Dim, Tile<Dim, Shape>::side> cell(P, p, corner, h1);
-    const double v = P.volume[p];
+  for (std::size_t p = begin; p < end; p += 4) {
+    const Group g(p, end);
+    const LinearCell<Dim, Tile<Dim, Shape>::side> cell(P, g, corner, h1);
+    const Vec4 v = g.read(P.volume.data()), mass = g.read(P.mass.data());
+    Vec4 trace = {};
+    for (int d = 0; d < Dim; ++d) trace += g.read(P.gradient[d * (Dim + 1)].data());
+    trace *= v;
     // Mean stress at a node: s - rho b (x_node - x_p).
-    double at_first = v * mean_stress(P, p), step[Dim];
+    Vec4 at_first = v * mean_stress(P, g), step[Dim];
     for (int d = 0; d < Dim; ++d) {
-      step[d] = -P.mass[p] * body[d] * h;
+      step[d] = mass * (-body[d] * h);
       at_first -= cell.fraction[d] * step[d];
     }
-    const Vec4 give = {v * trace_of(P, p), v, 0.0, 0.0};
     for (int n = 0; n < (1 << Dim); ++n) {
-      double s = at_first;
-      for (int d = 0; d < Dim; ++d) s += (n >> d & 1) ? step[d] : 0.0;
-      tile[cell.first + cell.offset(n)] += splat(cell.weight[n]) * Vec4{give[0], give[1], s, 0.0};
+      Vec4 stress = at_first;
+      for (int d = 0; d < Dim; ++d)
+        if (n >> d & 1) stress += step[d];
+      const Vec4& w = cell.weight[n];
+      Vec4 give[4] = {w * trace, w * v, w * stress, Vec4{}};
+      transpose(give[0], give[1], give[2], give[3]);
+      for (int k = 0; k < g.count; ++k) tile[cell.first[k] + cell.offset(n)] += give[k];
     }
   }
 }
@@ -102,13 +108,20 @@ template <int Dim, class Shape>
 void gather_volumetric(const Particles<Dim>& P, std::size_t begin, std::size_t end,
                        const std::array<double, Dim>& corner, double h1, double relaxation, const NodeMean* mean,
                        double* trace, double* shift) {
-  for (std::size_t p = begin; p < end; ++p) {
-    const LinearCell<Dim, Tile<Dim, Shape>::side> cell(P, p, corner, h1);
-    NodeMean t = {};
-    for (int n = 0; n < (1 << Dim); ++n)
-      t += NodeMean{cell.weight[n], cell.weight[n]} * mean[cell.first + cell.offset(n)];
-    trace[p - begin] = t[0];
-    shift[p - begin] = relaxation * (t[1] - mean_stress(P, p));
+  for (std::size_t p = begin; p < end; p += 4) {
+    const Group g(p, end);
+    const LinearCell<Dim, Tile<Dim, Shape>::side> cell(P, g, corner, h1);
+    Vec4 increment = {}, stress = {};
+    for (int n = 0; n < (1 << Dim); ++n) {
+      const auto at = [&](int k) { return reinterpret_cast<const double*>(mean + cell.first[k] + cell.offset(n)); };
+      Vec4 a, b;
+      transpose_pairs(at(0), at(1), at(2), at(3), a, b);
+      increment += cell.weight[n] * a;
+      stress += cell.weight[n] * b;
+    }
+    const Group of_run(p - begin, end - begin);
+    of_run.write(trace, increment);
+    of_run.write(shift, relaxation * (stress - mean_stress(P, g)));
   }
 }
 

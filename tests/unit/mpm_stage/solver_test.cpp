@@ -185,6 +185,32 @@ TEST_CASE("shorter steps take more of a motion with APIC, but not with AFLIP") {
   CHECK(energy_left(TransferName::aflip, 0.6) > 1.5 * energy_left(TransferName::apic, 0.6));
 }
 
+TEST_CASE("particles are held at the domain's sides, stopped or removed, as asked") {
+  const Terrain none;
+  const auto moving = [&](LeavingParticles leaving) {
+    Walls<2> walls;
+    walls.bounded = true;
+    walls.low = {-1.0, -1.0};
+    walls.high = {3.0, 3.0};
+    walls.leaving = leaving;
+    Particles<2> P = block<2>(0.125, {16, 16, 1}, true);
+    for (double& v : P.velocity[0]) v = 5.0;
+    auto s = make_solver<2>({}, 0.25, {-1.0, -1.0}, std::move(P), {soil(Model::linear_elastic)}, none, walls);
+    s->start(1e30);
+    for (int i = 0; i < 100; ++i) s->step({0, 0}, {0, 0}, 1e30);
+    return s;
+  };
+  const auto held = moving(LeavingParticles::wall);
+  CHECK(held->particles().count() == 256);
+  CHECK(held->held().size() > 10);
+  CHECK(held->work().removed > 0.0);
+  for (const double x : held->particles().position[0]) CHECK(x <= 3.0);
+  const auto fewer = moving(LeavingParticles::remove);
+  CHECK(fewer->particles().count() + fewer->removed().size() == 256);
+  CHECK(fewer->removed().size() > 10);
+  CHECK_THROWS_WITH_AS(moving(LeavingParticles::error), doctest::Contains("left the domain"), std::runtime_error);
+}
+
 TEST_CASE("a time step beyond the limit is caught with the particle's name, not carried on as garbage") {
   Terrain bed;
   bed.add_line({{{-10.0, 0.0}}, {{10.0, 0.0}}}, {0.4}, false);

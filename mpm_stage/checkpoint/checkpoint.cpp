@@ -1,0 +1,234 @@
+#include "mpm_stage/checkpoint/checkpoint.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "common/error.hpp"
+#include "common/file_format.hpp"
+
+namespace tailrun::mpm {
+
+namespace {
+
+const char* const format_name = "mpm_checkpoint";
+
+// Calls action(name, unit, column) for all columns that the next step reads; it writes the gradients before it does.
+template <class P, class Action>
+void for_each_kept_column(P& particles, Action action) {
+  const auto family = [&](const std::string& name, const char* unit, auto& columns) {
+    for (std::size_t k = 0; k < columns.size(); ++k) action(fmt::format("{}_{}", name, k), unit, columns[k]);
+  };
+  family("position", "m", particles.position);
+  family("velocity", "m/s", particles.velocity);
+  family("affine", "1/s", particles.affine);
+  family("stress", "Pa", particles.stress);
+  action(std::string("mass"), "kg", particles.mass);
+  action(std::string("volume"), "m3", particles.volume);
+  action(std::string("plastic_strain"), "1", particles.plastic_strain);
+  action(std::string("strength"), "Pa", particles.strength);
+  action(std::string("pore_pressure"), "Pa", particles.pore_pressure);
+}
+
+// Single numbers, each with its name: state of solver and run loop. Integers below 2^53 are exact as doubles.
+template <int Dim, class Action>
+void for_each_number(SolverState<Dim>& s, RunState& r, Action action) {
+  const auto integer = [&](const char* name, long& value) {
+    double number = static_cast<double>(value);
+    action(name, number);
+    value = static_cast<long>(number);
+  };
+  action("next_time_step", s.next_dt);
+  action("viscous_limit", s.viscous_limit);
+  action("drift", s.drift);
+  action("fastest_wave", s.fastest_wave);
+  integer("sorts", s.sorts);
+  action("work_plastic", s.work.plastic);
+  action("work_friction", s.work.friction);
+  action("work_damping", s.work.damping);
+  action("work_external", s.work.external);
+  action("work_removed", s.work.removed);
+  action("work_pore_pressure", s.work.pore_pressure);
+  action("seconds_grid", s.seconds.grid);
+  action("seconds_grid_to_particles", s.seconds.grid_to_particles);
+  action("seconds_volumetric", s.seconds.volumetric);
+  action("seconds_stress_and_scatter", s.seconds.stress_and_scatter);
+  action("seconds_sort", s.seconds.sort);
+  for (int d = 0; d < Dim; ++d) action(fmt::format("boundary_impulse_{}", d).c_str(), s.impulse[d]);
+  integer("steps", r.record.steps);
+  action("particle_steps", r.record.particle_steps);
+  action("time", r.record.time);
+  action("shortest_step", r.record.dt_min);
+  action("longest_step", r.record.dt_max);
+  action("wall_seconds", r.record.wall_seconds);
+  action("output_seconds", r.record.output_seconds);
+  action("setup_seconds", r.record.setup_seconds);
+  action("first_unbalanced", r.record.first_unbalanced);
+  action("largest_kinetic_of_steps", r.record.largest_kinetic);
+  action("largest_kinetic_of_rows", r.largest_kinetic);
+  integer("series_count", r.series_count);
+  integer("frame_count", r.frame_count);
+}
+
+// Rows of the series as plain numbers, for writing and for reading.
+template <class Action>
+void for_each_value(LedgerRow& r, Action action) {
+  for (double* x : {&r.time, &r.kinetic, &r.elastic, &r.gravitational, &r.work.plastic, &r.work.friction,
+                    &r.work.damping, &r.work.external, &r.work.removed, &r.work.pore_pressure, &r.residual, &r.mass,
+                    &r.momentum[0], &r.momentum[1], &r.momentum[2], &r.angular_momentum})
+    action(*x);
+}
+
+template <class Action>
+void for_each_value(FrontRow& r, Action action) {
+  for (double* x : {&r.time, &r.front, &r.robust_front, &r.flow_front, &r.flowed_mass, &r.top, &r.centre_x, &r.centre_y,
+                    &r.rms_speed, &r.maximum_speed})
+    action(*x);
+  for (double& x : r.points) action(x);
+}
+
+template <class Row>
+void write_rows(Hdf5Writer& file, const std::string& name, std::vector<Row> rows) {
+  std::vector<double> values;
+  for (Row& row : rows) for_each_value(row, [&](double x) { values.push_back(x); });
+  file.write(name, values, rows.empty() ? 1 : values.size() / rows.size(), "1", "rows of the series, SI units");
+}
+
+template <class Row>
+std::vector<Row> read_rows(const Hdf5Reader& file, const std::string& name, const Row& like) {
+  std::size_t width = 0;
+  Row row = like;
+  for_each_value(row, [&](double) { ++width; });
+  const std::vector<double> values = file.doubles(name, 0, width);
+  std::vector<Row> rows(values.size() / width, like);
+  std::size_t k = 0;
+  for (Row& r : rows) for_each_value(r, [&](double& x) { x = values[k++]; });
+  return rows;
+}
+
+void check_inputs(const Hdf5Reader& file, const Provenance& provenance) {
+  const std::string group = "/tailrun/provenance";
+  const auto names = file.texts(group + "/input_names"), sums = file.texts(group + "/input_sha256");
+  for (std::size_t k = 0; k < std::max(sums.size(), provenance.sha256.size()); ++k) {
+    if (k < sums.size() && k < provenance.sha256.size() && sums[k] == provenance.sha256[k].second) continue;
+    const std::string now = k < provenance.sha256.size() ? provenance.sha256[k].first : "none";
+    file.fail(group, fmt::format("input {} was '{}' when this checkpoint was written and is '{}' now, or its content "
+                                 "has changed since; a run can only go on with the files it began with (without "
+                                 "--resume it starts anew)",
+                                 k + 1, k < names.size() ? names[k] : "none", now));
+  }
+  if (file.text_attribute(group, "version") != version())
+    spdlog::warn("{} was written by version {} of the program, this is {}: results may differ in the last digits",
+                 file.path().string(), file.text_attribute(group, "version"), version());
+}
+
+}  // namespace
+
+template <int Dim>
+void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, double cell_size, const RunState& run,
+                      const Provenance& provenance) {
+  Hdf5Writer file(path);
+  write_format(file, format_name, checkpoint_format_version);
+  write_provenance(file, provenance);
+  SolverState<Dim> state = solver.state();
+  RunState copy = run;
+
+  file.group("/numbers");
+  file.attribute("/numbers", "dimension", static_cast<double>(Dim));
+  file.attribute("/numbers", "cell_size", cell_size);
+  for_each_number(state, copy, [&](const char* name, double value) { file.attribute("/numbers", name, value); });
+
+  const Particles<Dim>& P = solver.particles();
+  for_each_kept_column(P, [&](const std::string& name, const char* unit, const auto& column) {
+    if (!column.empty())
+      file.write("/particles/" + name, std::span<const double>(column.data(), column.size()), 0, unit,
+                 "in the solver's order");
+  });
+  file.write("/particles/material", std::span<const std::int32_t>(P.material.data(), P.count()), 0, "1", "number");
+  file.write("/particles/identity", std::span<const std::int32_t>(P.identity.data(), P.count()), 0, "1",
+             "row of the input");
+
+  std::vector<std::int64_t> blocks;
+  for (const auto& index : state.blocks) blocks.insert(blocks.end(), index.begin(), index.end());
+  const std::vector<std::int64_t> first(state.first.begin(), state.first.end());
+  file.write("/grid/blocks", std::span<const std::int64_t>(blocks), Dim, "1", "occupied blocks at the last sort");
+  file.write("/grid/first", std::span<const std::int64_t>(first), 0, "1", "first particle of each block, and the end");
+  file.write("/grid/wave_speed", state.wave_speed, 0, "m/s", "by material");
+  file.write("/particles/removed", std::span<const std::int32_t>(state.removed), 0, "1", "rows of the input");
+  file.write("/particles/held", std::span<const std::int32_t>(state.held), 0, "1", "rows of the input");
+
+  write_rows(file, "/series/ledger", run.ledger);
+  write_rows(file, "/series/front", run.front);
+  file.write_texts("/series/frame_names", run.frame_names, "frames written so far");
+  file.write("/series/frame_times", run.frame_times, 0, "s", "their times");
+  file.commit();
+}
+
+template <int Dim>
+RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, double cell_size,
+                         const Provenance& provenance) {
+  const Hdf5Reader file(path);
+  check_format(file, format_name, checkpoint_format_version);
+  check_inputs(file, provenance);
+  if (file.number_attribute("/numbers", "dimension") != Dim ||
+      file.number_attribute("/numbers", "cell_size") != cell_size)
+    file.fail("/numbers", fmt::format("holds a run in {} dimensions with cells of {} m, and this one has {} and {} m "
+                                      "(--size must be the same)",
+                                      file.number_attribute("/numbers", "dimension"),
+                                      file.number_attribute("/numbers", "cell_size"), Dim, cell_size));
+  SolverState<Dim> state;
+  RunState run;
+  for_each_number(state, run,
+                  [&](const char* name, double& value) { value = file.number_attribute("/numbers", name); });
+
+  // The solver's own particles say which columns there are and how many materials.
+  Particles<Dim>& like = solver.particles();
+  const auto materials = file.integers("/particles/material");
+  const auto identities = file.integers("/particles/identity", materials.size());
+  const std::size_t n = materials.size();
+  check_indices(file, "/particles/identity", identities, 0, static_cast<std::int64_t>(like.count()));
+  Particles<Dim> P;
+  P.resize(n, !like.affine[0].empty(), !like.pore_pressure.empty());
+  for_each_kept_column(P, [&](const std::string& name, const char*, auto& column) {
+    if (column.empty()) return;
+    const auto values = file.doubles("/particles/" + name, n);
+    std::copy(values.begin(), values.end(), column.begin());
+  });
+  std::copy(materials.begin(), materials.end(), P.material.begin());
+  std::copy(identities.begin(), identities.end(), P.identity.begin());
+
+  const auto blocks = file.integers("/grid/blocks", 0, Dim);
+  const auto first = file.integers("/grid/first", blocks.size() / Dim + 1);
+  if (first.front() != 0 || first.back() != static_cast<std::int64_t>(n) || !std::is_sorted(first.begin(), first.end()))
+    file.fail("/grid/first", fmt::format("must rise from 0 to the number of particles, {}", n));
+  state.blocks.resize(blocks.size() / Dim);
+  for (std::size_t k = 0; k < blocks.size(); ++k) state.blocks[k / Dim][k % Dim] = static_cast<int>(blocks[k]);
+  state.first.assign(first.begin(), first.end());
+  state.wave_speed = file.doubles("/grid/wave_speed");
+  check_indices(file, "/particles/material", materials, 0, static_cast<std::int64_t>(state.wave_speed.size()));
+  const auto removed = file.integers("/particles/removed"), held = file.integers("/particles/held");
+  state.removed.assign(removed.begin(), removed.end());
+  check_indices(file, "/particles/held", held, 0, static_cast<std::int64_t>(like.count()));
+  state.held.assign(held.begin(), held.end());
+
+  run.ledger = read_rows(file, "/series/ledger", LedgerRow{});
+  const auto shape = file.shape("/series/front");
+  FrontRow row;
+  std::size_t plain = 0;
+  for_each_value(row, [&](double) { ++plain; });
+  if (shape.size() != 2 || shape[1] < plain) file.fail("/series/front", "has too few columns");
+  row.points.resize(shape[1] - plain);
+  run.front = read_rows(file, "/series/front", row);
+  run.frame_names = file.texts("/series/frame_names");
+  run.frame_times = file.doubles("/series/frame_times", run.frame_names.size());
+  solver.resume(std::move(P), state);
+  return run;
+}
+
+template void write_checkpoint<2>(const std::filesystem::path&, Solver<2>&, double, const RunState&, const Provenance&);
+template void write_checkpoint<3>(const std::filesystem::path&, Solver<3>&, double, const RunState&, const Provenance&);
+template RunState read_checkpoint<2>(const std::filesystem::path&, Solver<2>&, double, const Provenance&);
+template RunState read_checkpoint<3>(const std::filesystem::path&, Solver<3>&, double, const Provenance&);
+
+}  // namespace tailrun::mpm

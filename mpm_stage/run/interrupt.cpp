@@ -1,0 +1,31 @@
+#include "mpm_stage/run/interrupt.hpp"
+
+#include <csignal>
+
+namespace tailrun::mpm {
+
+namespace {
+
+volatile std::sig_atomic_t noted = 0;
+
+}  // namespace
+
+extern "C" {
+static void note(int signal) {
+  noted = signal;
+}
+}
+
+void note_signals() {
+  struct sigaction action {};
+  action.sa_handler = note;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+std::string noted_signal() {
+  return noted == SIGINT ? "SIGINT" : noted == SIGTERM ? "SIGTERM" : "";
+}
+
+}  // namespace tailrun::mpm

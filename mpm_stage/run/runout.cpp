@@ -1,0 +1,258 @@
+#include "mpm_stage/run/runout.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+
+#include "common/application.hpp"
+#include "common/error.hpp"
+#include "common/progress.hpp"
+#include "mpm_stage/checkpoint/checkpoint.hpp"
+#include "mpm_stage/output/frames.hpp"
+#include "mpm_stage/output/front.hpp"
+#include "mpm_stage/output/ledger.hpp"
+#include "mpm_stage/output/summary.hpp"
+#include "mpm_stage/run/schedule.hpp"
+#include "mpm_stage/step/solver.hpp"
+
+namespace tailrun::mpm {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+template <int Dim>
+std::array<double, Dim> in_dimension(const std::array<double, 3>& a) {
+  std::array<double, Dim> b;
+  for (int d = 0; d < Dim; ++d) b[d] = a[d];
+  return b;
+}
+
+template <int Dim>
+Walls<Dim> in_dimension(const Walls<3>& w) {
+  Walls<Dim> b;
+  b.bounded = w.bounded;
+  b.leaving = w.leaving;
+  for (int d = 0; d < Dim; ++d) {
+    b.low[d] = w.low[d];
+    b.high[d] = w.high[d];
+    for (int s = 0; s < 2; ++s) {
+      b.side[d][s].kind = w.side[d][s].kind;
+      b.side[d][s].friction = w.side[d][s].friction;
+    }
+  }
+  return b;
+}
+
+// One run with its solver and records. Everything that changes from step to step is in the solver, in `record_`, in the
+// schedules and in the three records, and all of that is in a checkpoint.
+template <int Dim>
+class Runout {
+ public:
+  Runout(const Scene& scene, const std::filesystem::path& folder, const Provenance& provenance,
+         const RunControl& control)
+      : scene_(scene),
+        folder_(folder),
+        checkpoint_(folder / "checkpoint.h5"),
+        provenance_(provenance),
+        control_(control),
+        gravity_(in_dimension<Dim>(scene.gravity)),
+        solver_(make_solver<Dim>(scene.solver, scene.cell_size, in_dimension<Dim>(scene.origin),
+                                 solver_particles<Dim>(scene), scene.materials, scene.terrain,
+                                 in_dimension<Dim>(scene.walls))),
+        ledger_(gravity_),
+        front_(scene),
+        frames_(folder / "frames", provenance) {}
+
+  void run() {
+    if (control_.resume)
+      resume();
+    else
+      begin();
+    last_checkpoint_ = Clock::now();
+    Progress progress("mpm", scene_.end_time, "s");
+    try {
+      steps(progress);
+    } catch (const ComputationError& error) {
+      // The frames so far are the last good state; the records up to here are kept beside them.
+      record_.stop_reason = fmt::format("failed at t = {:.6g} s: {}", record_.time, error.what());
+      finish();
+      throw ComputationError(fmt::format("t = {:.6g} s: {}{}", record_.time, error.what(), last_good_state()));
+    }
+    if (record_.stop_reason.empty()) record_.stop_reason = "end time";
+
+    // The last state and the summary; a run that is over has no use for its checkpoint.
+    if (scene_.output.frame_interval > 0.0)
+      frames_.write(particle_set<Dim>(scene_, solver_->particles(), record_.time));
+    progress.finish(record_.stop_reason);
+    if (ledger_.rows().back().time < record_.time) {
+      ledger_.sample(record_.time, *solver_, scene_.energy_growth_limit);
+      front_.sample(record_.time, solver_->particles());
+    }
+    finish();
+    std::filesystem::remove(checkpoint_);
+    const auto& f = front_.rows();
+    fmt::print("{}: {} after {:.3f} s, {} steps; front {:.3f} m -> {:.3f} m; energy residual {:.2e} of {:.4g} J\n",
+               scene_.title, record_.stop_reason, record_.time, record_.steps, f.front().robust_front,
+               f.back().robust_front, ledger_.rows().back().residual / std::max(ledger_.turnover(), 1e-300),
+               ledger_.turnover());
+  }
+
+ private:
+  double until_next_event(double time) const {
+    const double next = std::min({series_.next(), frame_.next(), scene_.end_time});
+    return next > time ? next - time : 1e300;
+  }
+
+  // Sets the particles on the grid and records the start.
+  void begin() {
+    std::filesystem::remove(checkpoint_);
+    series_.advance();
+    frame_.advance();
+    solver_->start(until_next_event(0.0));
+    record_.first_unbalanced = solver_->unbalanced_force_ratio(gravity_);
+    ledger_.sample(0.0, *solver_, scene_.energy_growth_limit);
+    front_.sample(0.0, solver_->particles());
+    if (scene_.output.frame_interval > 0.0) frames_.write(particle_set<Dim>(scene_, solver_->particles(), 0.0));
+    record_.setup_seconds = seconds_since(start_);
+    spdlog::info(
+        "{} particles in {} blocks of {} cells, first time step {:.3g} s, out-of-balance forces {:.3g} of the weight",
+        solver_->particles().count(), solver_->grid().occupied(), Block<Dim>::nodes, solver_->next_dt(),
+        record_.first_unbalanced);
+  }
+
+  void resume() {
+    if (!std::filesystem::exists(checkpoint_))
+      throw InputError(
+          fmt::format("{}: no such file, so there is nothing to go on from: the run has not begun, has "
+                      "reached its end, or time/checkpoint_interval is 0. Run it without --resume",
+                      checkpoint_.string()));
+    RunState state = read_checkpoint<Dim>(checkpoint_, *solver_, scene_.cell_size, provenance_);
+    record_ = state.record;
+    series_ = Schedule(scene_.output.series_interval, state.series_count);
+    frame_ = Schedule(scene_.output.frame_interval, state.frame_count);
+    ledger_.restore(std::move(state.ledger), state.largest_kinetic);
+    front_.restore(std::move(state.front));
+    frames_.restore(std::move(state.frame_names), std::move(state.frame_times));
+    wall_seconds_before_ = record_.wall_seconds;
+    spdlog::info("going on from {}: t = {:.6g} s, step {}", checkpoint_.string(), record_.time, record_.steps);
+  }
+
+  void save() {
+    // Frames are written by a thread of their own, and the HDF5 library by one thread at a time.
+    frames_.wait();
+    RunState state;
+    state.record = record_;
+    state.record.wall_seconds = wall_seconds_before_ + seconds_since(start_);
+    state.series_count = series_.count();
+    state.frame_count = frame_.count();
+    state.frame_names = frames_.names();
+    state.frame_times = frames_.times();
+    state.ledger = ledger_.rows();
+    state.largest_kinetic = ledger_.largest_kinetic();
+    state.front = front_.rows();
+    write_checkpoint<Dim>(checkpoint_, *solver_, scene_.cell_size, state, provenance_);
+    last_checkpoint_ = Clock::now();
+  }
+
+  void steps(Progress& progress) {
+    const double shaking_end = scene_.base.shaken() ? scene_.base.motion->duration() - scene_.base.start : 0.0;
+    while (record_.time < scene_.end_time * (1.0 - 1e-12)) {
+      std::array<double, Dim> inertial{};
+      if (scene_.base.shaken()) {
+        const double a =
+            scene_.base.motion->acceleration_at(scene_.base.start + record_.time + 0.5 * solver_->next_dt());
+        for (int d = 0; d < Dim; ++d) inertial[d] = -a * scene_.base.direction[d];
+      }
+      // An event that falls on the end of this step is over by the next one.
+      const double after = record_.time + solver_->next_dt();
+      const bool series_due = series_.due(after), frame_due = frame_.due(after);
+      if (series_due) series_.advance();
+      if (frame_due) frame_.advance();
+      const StepReport report = solver_->step(gravity_, inertial, until_next_event(after));
+      record_.time = after;
+      ++record_.steps;
+      record_.particle_steps += static_cast<double>(solver_->particles().count());
+      record_.dt_min = std::min(record_.dt_min, report.dt);
+      record_.dt_max = std::max(record_.dt_max, report.dt);
+      record_.largest_kinetic = std::max(record_.largest_kinetic, report.kinetic_energy);
+      if ((series_due || frame_due) && record_event(series_due, frame_due, shaking_end, progress)) return;
+      mind_checkpoints();
+    }
+  }
+
+  // Returns whether all has come to rest.
+  bool record_event(bool series_due, bool frame_due, double shaking_end, Progress& progress) {
+    const auto since = Clock::now();
+    if (series_due) {
+      ledger_.sample(record_.time, *solver_, scene_.energy_growth_limit);
+      const FrontRow& row = front_.sample(record_.time, solver_->particles());
+      progress.update(record_.time, record_.steps,
+                      fmt::format("front {:.2f} m, {:.2f} m/s", row.robust_front, row.rms_speed));
+    }
+    if (frame_due) frames_.write(particle_set<Dim>(scene_, solver_->particles(), record_.time));
+    record_.output_seconds += seconds_since(since);
+    if (!series_due || record_.time < shaking_end || !front_.at_rest(scene_.rest)) return false;
+    record_.stop_reason = "at rest";
+    return true;
+  }
+
+  void mind_checkpoints() {
+    const std::string reason = control_.interruption ? control_.interruption(record_.steps) : "";
+    if (!reason.empty()) {
+      save();
+      throw ComputationError(fmt::format("interrupted by {}; to go on: {}", reason, control_.resume_command));
+    }
+    if (scene_.checkpoint_interval > 0.0 && seconds_since(last_checkpoint_) > 60.0 * scene_.checkpoint_interval) save();
+  }
+
+  std::string last_good_state() const {
+    std::string text;
+    if (frames_.count() > 0) text += "; last frame: " + (folder_ / "frames" / frames_.last()).string();
+    if (std::filesystem::exists(checkpoint_)) text += "; last checkpoint: " + checkpoint_.string();
+    return text;
+  }
+
+  void finish() {
+    frames_.wait();
+    record_.frames = frames_.count();
+    record_.wall_seconds = wall_seconds_before_ + seconds_since(start_);
+    front_.write(folder_ / "front.csv");
+    ledger_.write(folder_ / "ledger.csv");
+    write_text_file((folder_ / "summary.json").string(),
+                    make_summary<Dim>(scene_, *solver_, record_, ledger_, front_).dump(2) + "\n");
+  }
+
+  const Clock::time_point start_ = Clock::now();
+  const Scene& scene_;
+  std::filesystem::path folder_, checkpoint_;
+  const Provenance& provenance_;
+  const RunControl& control_;
+  std::array<double, Dim> gravity_;
+  std::unique_ptr<Solver<Dim>> solver_;
+  RunRecord record_;
+  Schedule series_{scene_.output.series_interval, 0}, frame_{scene_.output.frame_interval, 0};
+  Ledger<Dim> ledger_;
+  FrontSeries<Dim> front_;
+  FrameWriter frames_;
+  Clock::time_point last_checkpoint_ = start_;
+  double wall_seconds_before_ = 0.0;
+};
+
+}  // namespace
+
+template <int Dim>
+void run_scene(const Scene& scene, const std::filesystem::path& folder, const Provenance& provenance,
+               const RunControl& control) {
+  Runout<Dim>(scene, folder, provenance, control).run();
+}
+
+template void run_scene<2>(const Scene&, const std::filesystem::path&, const Provenance&, const RunControl&);
+template void run_scene<3>(const Scene&, const std::filesystem::path&, const Provenance&, const RunControl&);
+
+}  // namespace tailrun::mpm

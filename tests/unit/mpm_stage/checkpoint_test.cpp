@@ -1,0 +1,116 @@
+#include "mpm_stage/checkpoint/checkpoint.hpp"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "common/error.hpp"
+#include "mpm_stage/run/runout.hpp"
+
+using namespace tailrun;
+using namespace tailrun::mpm;
+
+namespace {
+
+// A strip of frictional soil with water, and one of clay that softens, fall apart on a slope between held sides.
+const char* const case_text = R"({
+  "grid": {"cell_size": 0.25},
+  "domain": {"low": [-4, -4], "high": [6, 4], "leaving_particles": "wall"},
+  "time": {"end": 0.6, "courant": 0.4},
+  "materials": {
+    "sand": {"model": "mohr_coulomb", "youngs_modulus": 1e6, "poisson_ratio": 0.3, "cohesion": 0, "friction_angle": 30},
+    "clay": {"model": "tresca", "youngs_modulus": 1e6, "poisson_ratio": 0.4, "cohesion": 2000,
+             "softening": {"end_strain": 0.5, "cohesion_ratio": 0.2}}},
+  "terrain": [{"points": [[-10, 0], [2, 0], [10, -4]], "friction": 0.3}],
+  "particles": [
+    {"shape": "box", "low": [0, 0], "high": [2, 1], "material": "clay", "velocity": [3, 0]},
+    {"shape": "box", "low": [0, 1], "high": [2, 2], "material": "sand", "velocity": [3, 0]}],
+  "output": {"frame_interval": 0.2, "series_interval": 0.02}
+})";
+
+class Folder {
+ public:
+  explicit Folder(const std::string& name)
+      : path_(std::filesystem::temp_directory_path() / ("tailrun_" + name + "_" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+// Runs the case text in `to`, stopping after `stop` steps unless that is 0.
+void run(const Folder& folder, const std::string& to, bool resume, long stop, const std::string& text = case_text) {
+  std::ofstream(folder / "mpm.json") << text;
+  const CaseFile file(folder / "mpm.json");
+  const Scene scene = read_scene(file, {});
+  Provenance provenance;
+  provenance.program = "mpm_stage";
+  provenance.add_text("mpm.json", file.text());
+  RunControl control;
+  control.resume = resume;
+  control.resume_command = "run again";
+  control.interruption = [stop](long steps) { return std::string(stop > 0 && steps == stop ? "the test" : ""); };
+  run_scene<2>(scene, folder / to, provenance, control);
+}
+
+}  // namespace
+
+TEST_CASE("a run that was interrupted twice and went on leaves the same bytes as one in a piece") {
+  const Folder folder("resume");
+  run(folder, "whole", false, 0);
+  CHECK_THROWS_WITH_AS(run(folder, "parts", false, 37), doctest::Contains("checkpoint.h5"), ComputationError);
+  CHECK_THROWS_WITH_AS(run(folder, "parts", true, 111), doctest::Contains("run again"), ComputationError);
+  run(folder, "parts", true, 0);
+
+  const std::string front = text_of(folder / "whole/front.csv"), ledger = text_of(folder / "whole/ledger.csv");
+  REQUIRE(std::count(front.begin(), front.end(), '\n') > 20);
+  CHECK(front == text_of(folder / "parts/front.csv"));
+  CHECK(ledger == text_of(folder / "parts/ledger.csv"));
+  CHECK(text_of(folder / "whole/frames/runout.vtkhdf.series") == text_of(folder / "parts/frames/runout.vtkhdf.series"));
+  for (const char* frame : {"frames/runout_00001.vtkhdf", "frames/runout_00003.vtkhdf"}) {
+    CAPTURE(frame);
+    const ParticleSet a = read_particles(folder / ("whole/" + std::string(frame)));
+    const ParticleSet b = read_particles(folder / ("parts/" + std::string(frame)));
+    CHECK(a.position == b.position);
+    CHECK(a.velocity == b.velocity);
+    CHECK(a.effective_stress == b.effective_stress);
+    CHECK(a.pore_pressure == b.pore_pressure);
+    CHECK(a.volume == b.volume);
+    CHECK(a.plastic_deviatoric_strain == b.plastic_deviatoric_strain);
+  }
+  CHECK_FALSE(std::filesystem::exists(folder / "parts/checkpoint.h5"));
+}
+
+TEST_CASE("a run does not go on with another case file, nor without a checkpoint") {
+  const Folder folder("refuse");
+  CHECK_THROWS_WITH_AS(run(folder, "out", true, 0), doctest::Contains("nothing to go on from"), InputError);
+  CHECK_THROWS_AS(run(folder, "out", false, 5), ComputationError);
+  std::string other = case_text;
+  other.replace(other.find("\"friction\": 0.3"), 15, "\"friction\": 0.4");
+  CHECK_THROWS_WITH_AS(run(folder, "out", true, 0, other), doctest::Contains("mpm.json"), InputError);
+  CHECK(std::filesystem::exists(folder / "out/checkpoint.h5"));
+}
+
+TEST_CASE("a cut-off checkpoint is refused") {
+  const Folder folder("damaged");
+  CHECK_THROWS_AS(run(folder, "out", false, 5), ComputationError);
+  std::filesystem::resize_file(folder / "out/checkpoint.h5",
+                               std::filesystem::file_size(folder / "out/checkpoint.h5") / 2);
+  CHECK_THROWS_AS(run(folder, "out", true, 0), InputError);
+}
