@@ -18,6 +18,12 @@ def show(value, digits=2):
     return "-" if value is None else f"{value:.{digits}f}" if isinstance(value, float) else str(value)
 
 
+def suggestion(window):
+    """Value and unit: the time, or why there is none."""
+    time = window.get("suggested_transfer_time_s")
+    return (show(time), "s") if time is not None else (f"none: {window.get('reason', '-')}", "")
+
+
 def collect(results, phase):
     """Rows (stage, what, value, unit) from the summaries and series of a case; missing ones are left out."""
     rows = []
@@ -34,7 +40,7 @@ def collect(results, phase):
             ("FEM", "mean r_u of the tailings", show(fem.get("mean_excess_pore_pressure_ratio")), "1"),
             ("FEM", "mean r_u at 5 s", show(at_time(quality, "mean_excess_pore_pressure_ratio", 5.0)), "1"),
             ("FEM", "smallest scaled Jacobian", show(fem.get("min_scaled_jacobian")), "1"),
-            ("FEM", "suggested hand-over", show(fem.get("transfer_window", {}).get("suggested_transfer_time_s")), "s"),
+            ("FEM", "suggested hand-over", *suggestion(fem.get("transfer_window", {}))),
             ("FEM", "wall time", show(fem.get("seconds", {}).get("total"), 1), "s"),
         ]
     mpm = chain.summary(phase / "mpm" / "summary.json")
