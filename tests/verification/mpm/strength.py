@@ -1,0 +1,99 @@
+"""Soil that yields: the return itself, collapse loads, cohesive flow."""
+import math
+
+import numpy as np
+
+from elastic import point_checks
+from runner import G
+
+
+def mohr_coulomb_point(r):
+    return point_checks(r, "mohr_coulomb_point")
+
+
+def strip_footing(r):
+    """The footing's loss of momentum is the soil's resistance; its plateau over B c / 2 against 2 + pi (Prandtl 1920)."""
+    run = r.run()
+    frames = [run.frame(k) for k in range(len(run.frames()))]
+    frames = [f for f, g in zip(frames, frames[1:]) if g["time"] > f["time"]] + frames[-1:]
+    footing = frames[0]["mass"] > 1e3 * frames[0]["mass"].min()
+    mass = frames[0]["mass"][footing].sum()
+    time = np.array([f["time"] for f in frames])
+    speed = np.array([np.average(f["velocity"][footing, 1]) for f in frames])
+    depth = np.array([frames[0]["x"][footing, 1].mean() - f["x"][footing, 1].mean() for f in frames])
+    factor = mass * np.diff(speed) / np.diff(time) / (0.8 * 1000.0)
+    for d, n in list(zip(depth[1:], factor))[::3]:
+        print(f"     settlement {d / 1.6:.4f} B: resistance {n:.3f} c")
+    late = depth[1:] > 0.6 * depth[-1]
+    found = float(np.mean(factor[late]))
+    return [("bearing pressure over c", found, 2 + math.pi, abs(found / (2 + math.pi) - 1), 0.03),
+            ("its growth over the last third of the settlement", None, None,
+             abs(np.polyfit(depth[1:][late], factor[late], 1)[0] * np.ptp(depth[1:][late]) / found), 0.03)]
+
+
+def vertical_cut(r):
+    """Stability numbers from 3.3 to 4.4: where the crest goes from standing to falling, against 3.83 (Taylor 1937)."""
+    standing = []
+    for number in (3.447, 3.6385, 3.83, 4.0215, 4.213):
+        scene = r.scene()
+        scene["materials"]["soil"]["cohesion"] = 2000 * G * 5.0 / number
+        run = r.run(scene, f"number{number}")
+        crest = run.front["crest_y_m"]
+        t = run.front["time_s"]
+        late = t > 0.75 * t[-1]
+        rate = (crest[late][0] - crest[-1]) / (t[-1] - t[late][0])
+        print(f"     gamma H / c = {number}: crest {(crest[0] - crest[-1]) / 5.0:.4f} H lower, still {rate / 5.0:.2e} H per s")
+        standing.append((number, (crest[0] - crest[-1]) / 5.0 < 0.05))
+    stood = max((n for n, s in standing if s), default=0.0)
+    fell = min((n for n, s in standing if not s), default=math.inf)
+    found = 0.5 * (stood + fell) if stood > 0.0 and math.isfinite(fell) else math.nan
+    error = abs(found / 3.83 - 1)
+    return [("stability number gamma H / c between standing and falling", found, 3.83,
+             error if math.isfinite(error) else 1.0, 0.05)]
+
+
+def mean_stress_noise(frame, h):
+    """RMS difference of a full cell's mean stress from the mean of its two neighbours, over the mean of all."""
+    s, v = frame["effective_stress"], frame["volume"]
+    mean = -(s[:, 0] + s[:, 1] + s[:, 2]) / 3.0
+    cells = {}
+    for p, key in enumerate(map(tuple, np.floor(frame["x"][:, :2] / h).astype(int))):
+        c = cells.setdefault(key, [0.0, 0.0])
+        c[0] += mean[p] * v[p]
+        c[1] += v[p]
+    value = {k: c[0] / c[1] for k, c in cells.items() if c[1] > 0.7 * h * h}
+    d = [q - 0.5 * (value[i + a, j + b] + value[i - a, j - b]) for (i, j), q in value.items()
+         for a, b in ((1, 0), (0, 1)) if (i + a, j + b) in value and (i - a, j - b) in value]
+    return math.sqrt(np.mean(np.square(d))) / np.mean(list(value.values()))
+
+
+def cohesive_block(r):
+    rows, runout = [], []
+    for courant in (0.1, 0.4, 0.8):
+        scene = r.scene()
+        scene["time"]["courant"] = courant
+        run = r.run(scene, f"courant{courant}")
+        runout.append(run.summary["runout_m"])
+        total = run.ledger["kinetic_J"] + run.ledger["elastic_J"] + run.ledger["gravitational_J"]
+        rows.append((f"energy above the start's, courant {courant}", None, None, (total.max() - total[0]) / total[0], 1e-3))
+    spread = (max(runout) - min(runout)) / np.mean(runout)
+    rows.append(("spread of the runout over time steps", None, None, spread, 0.03))
+    noise = {}
+    for average in (True, False):
+        scene = r.scene()
+        scene["scheme"] = {"volumetric_average": average}
+        scene["materials"]["soil"]["poisson_ratio"] = 0.49
+        scene["particles"][0]["stress"]["k0"] = 0.49 / 0.51
+        run = r.run(scene, f"nu049_{'averaged' if average else 'plain'}")
+        noise[average] = mean_stress_noise(run.frame(), 0.5)
+    rows.append(("checkerboard at rest, averaged over plain", noise[True], noise[False], noise[True] / noise[False], 0.1))
+    rows.append(("RMS difference of neighbouring cells' mean stress over the mean", None, None, noise[True], 0.05))
+    return rows
+
+
+def bingham_rest(r):
+    run = r.run()
+    volume, tau = 0.1, 20.0
+    wanted = (1.5 * volume) ** (2 / 3) * (1000 * G / (2 * tau)) ** (1 / 3)
+    found = run.summary["front_position_m"]
+    return [("half length at rest, m", found, wanted, abs(found / wanted - 1), 0.05)]
