@@ -1,6 +1,7 @@
 // Vectors that start on a cache line, each on another one of its page: large arrays of one size would all start at the
 // same place of a page, the two dozen columns of a particle would fall into one set of the first-level cache, which
-// holds eight lines, and push each other out.
+// holds eight lines, and push each other out. Arrays of megabytes ask for large pages, of which a step touches far
+// fewer.
 #pragma once
 
 #include <sys/mman.h>

@@ -70,35 +70,46 @@ inline void transpose_pairs(const double* p0, const double* p1, const double* p2
   y = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
 }
 
-// Four consecutive particles of a column. At the end of a run fewer are left: the lanes beyond repeat the last particle
-// when read and are not written.
+// Four consecutive particles of a column.
 struct Group {
   std::size_t first;
-  int count;  // 1 .. 4
-
-  Group(std::size_t p, std::size_t end) : first(p), count(end - p < 4 ? static_cast<int>(end - p) : 4) {}
+  static constexpr int count = 4;
 
   [[gnu::always_inline]] Vec4 read(const double* column) const {
     Vec4 v;
-    if (count == 4) {
-      __builtin_memcpy(&v, column + first, sizeof v);
-    } else {
-      for (int k = 0; k < 4; ++k) v[k] = column[first + static_cast<std::size_t>(k < count ? k : count - 1)];
-    }
+    __builtin_memcpy(&v, column + first, sizeof v);
     return v;
   }
-  [[gnu::always_inline]] void write(double* column, Vec4 v) const {
-    if (count == 4) {
-      __builtin_memcpy(column + first, &v, sizeof v);
-    } else {
-      for (int k = 0; k < count; ++k) column[first + static_cast<std::size_t>(k)] = v[k];
-    }
+  [[gnu::always_inline]] void write(double* column, Vec4 v) const { __builtin_memcpy(column + first, &v, sizeof v); }
+  [[gnu::always_inline]] Vec4 only(Vec4 v) const { return v; }
+};
+
+// The one to three particles at the end of a run: lanes beyond repeat the last one when read and are not written.
+struct LastGroup {
+  std::size_t first;
+  int count;
+
+  Vec4 read(const double* column) const {
+    Vec4 v;
+    for (int k = 0; k < 4; ++k) v[k] = column[first + static_cast<std::size_t>(k < count ? k : count - 1)];
+    return v;
+  }
+  void write(double* column, Vec4 v) const {
+    for (int k = 0; k < count; ++k) column[first + static_cast<std::size_t>(k)] = v[k];
   }
   // `v` with 0 in the lanes of particles that are not there.
-  [[gnu::always_inline]] Vec4 only(Vec4 v) const {
+  Vec4 only(Vec4 v) const {
     for (int k = count; k < 4; ++k) v[k] = 0.0;
     return v;
   }
 };
+
+// action(group) for the particles begin .. end.
+template <class Action>
+[[gnu::always_inline]] inline void for_each_group(std::size_t begin, std::size_t end, Action action) {
+  std::size_t p = begin;
+  for (; p + 4 <= end; p += 4) action(Group{p});
+  if (p < end) action(LastGroup{p, static_cast<int>(end - p)});
+}
 
 }  // namespace tailrun::mpm

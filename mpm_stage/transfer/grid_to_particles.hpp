@@ -71,66 +71,66 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
   constexpr bool Moments = Affine && Shape::apic > 0.0;
   const double h1 = s.inverse_cell, dt = s.dt, A0 = dt * h1, C0 = Shape::apic * h1;
   Vec4 far = {}, fast = {}, kinetic = {};
-  for (std::size_t p = begin; p < end; p += 4) {
-    const Group g(p, end);
-    const Vec4 x = g.read(P.position[0].data()), y = g.read(P.position[1].data());
-    Vec4 wx[S], dx[S], mx[S], wy[S], dy[S], my[S];
-    const Int4 i0 = Shape::evaluate((x - corner[0]) * h1, wx, dx, mx);
-    const Int4 j0 = Shape::evaluate((y - corner[1]) * h1, wy, dy, my);
-    const Int4 at = j0 * T + i0;
-    const Vec4 *n0 = node + at[0], *n1 = node + at[1], *n2 = node + at[2], *n3 = node + at[3];
-    Vec4 v[2] = {}, gx[2] = {}, gy[2] = {}, cx[2] = {}, cy[2] = {}, change[2] = {};
-    for (int j = 0; j < S; ++j) {
-      Vec4 row[2] = {}, slope[2] = {}, moment[2] = {}, row_change[2] = {};
-      for (int i = 0; i < S; ++i) {
-        const int k = j * T + i;
-        Vec4 u[2];
-        const auto lanes = [&](int first, Vec4& a, Vec4& b) {
-          const auto start = [&](const Vec4* n) { return reinterpret_cast<const double*>(n + k) + first; };
-          transpose_pairs(start(n0), start(n1), start(n2), start(n3), a, b);
-        };
-        lanes(0, u[0], u[1]);
+  for_each_group(
+      begin, end, [&](const auto& g) __attribute__((always_inline)) {
+        const Vec4 x = g.read(P.position[0].data()), y = g.read(P.position[1].data());
+        Vec4 wx[S], dx[S], mx[S], wy[S], dy[S], my[S];
+        const Int4 i0 = Shape::evaluate((x - corner[0]) * h1, wx, dx, mx);
+        const Int4 j0 = Shape::evaluate((y - corner[1]) * h1, wy, dy, my);
+        const Int4 at = j0 * T + i0;
+        const Vec4 *n0 = node + at[0], *n1 = node + at[1], *n2 = node + at[2], *n3 = node + at[3];
+        Vec4 v[2] = {}, gx[2] = {}, gy[2] = {}, cx[2] = {}, cy[2] = {}, change[2] = {};
+        for (int j = 0; j < S; ++j) {
+          Vec4 row[2] = {}, slope[2] = {}, moment[2] = {}, row_change[2] = {};
+          for (int i = 0; i < S; ++i) {
+            const int k = j * T + i;
+            Vec4 u[2];
+            const auto lanes = [&](int first, Vec4& a, Vec4& b) {
+              const auto start = [&](const Vec4* n) { return reinterpret_cast<const double*>(n + k) + first; };
+              transpose_pairs(start(n0), start(n1), start(n2), start(n3), a, b);
+            };
+            lanes(0, u[0], u[1]);
+            for (int c = 0; c < 2; ++c) {
+              row[c] += u[c] * wx[i];
+              slope[c] += u[c] * dx[i];
+              if constexpr (Moments) moment[c] += u[c] * mx[i];
+            }
+            if constexpr (Flip) {
+              lanes(2, u[0], u[1]);
+              for (int c = 0; c < 2; ++c) row_change[c] += u[c] * wx[i];
+            }
+          }
+          for (int c = 0; c < 2; ++c) {
+            v[c] += row[c] * wy[j];
+            gx[c] += slope[c] * wy[j];
+            gy[c] += row[c] * dy[j];
+            if constexpr (Moments) {
+              cx[c] += moment[c] * wy[j];
+              cy[c] += row[c] * my[j];
+            }
+            if constexpr (Flip) change[c] += row_change[c] * wy[j];
+          }
+        }
+        if constexpr (Affine)
+          for (int c = 0; c < 2; ++c) {
+            g.write(P.affine[2 * c].data(), Moments ? C0 * cx[c] : h1 * gx[c]);
+            g.write(P.affine[2 * c + 1].data(), Moments ? C0 * cy[c] : h1 * gy[c]);
+          }
+        const auto G = midpoint_gradient(std::array<Vec4, 4>{A0 * gx[0], A0 * gy[0], A0 * gx[1], A0 * gy[1]});
+        for (int k = 0; k < 4; ++k) g.write(P.gradient[k].data(), G[k]);
+        const Vec4 ux = dt * v[0], uy = dt * v[1];
+        g.write(P.position[0].data(), x + ux);
+        g.write(P.position[1].data(), y + uy);
+        Vec4 speed = {};
         for (int c = 0; c < 2; ++c) {
-          row[c] += u[c] * wx[i];
-          slope[c] += u[c] * dx[i];
-          if constexpr (Moments) moment[c] += u[c] * mx[i];
+          if constexpr (Flip) v[c] = s.flip * (g.read(P.velocity[c].data()) + change[c]) + (1.0 - s.flip) * v[c];
+          g.write(P.velocity[c].data(), v[c]);
+          speed += v[c] * v[c];
         }
-        if constexpr (Flip) {
-          lanes(2, u[0], u[1]);
-          for (int c = 0; c < 2; ++c) row_change[c] += u[c] * wx[i];
-        }
-      }
-      for (int c = 0; c < 2; ++c) {
-        v[c] += row[c] * wy[j];
-        gx[c] += slope[c] * wy[j];
-        gy[c] += row[c] * dy[j];
-        if constexpr (Moments) {
-          cx[c] += moment[c] * wy[j];
-          cy[c] += row[c] * my[j];
-        }
-        if constexpr (Flip) change[c] += row_change[c] * wy[j];
-      }
-    }
-    if constexpr (Affine)
-      for (int c = 0; c < 2; ++c) {
-        g.write(P.affine[2 * c].data(), Moments ? C0 * cx[c] : h1 * gx[c]);
-        g.write(P.affine[2 * c + 1].data(), Moments ? C0 * cy[c] : h1 * gy[c]);
-      }
-    const auto G = midpoint_gradient(std::array<Vec4, 4>{A0 * gx[0], A0 * gy[0], A0 * gx[1], A0 * gy[1]});
-    for (int k = 0; k < 4; ++k) g.write(P.gradient[k].data(), G[k]);
-    const Vec4 ux = dt * v[0], uy = dt * v[1];
-    g.write(P.position[0].data(), x + ux);
-    g.write(P.position[1].data(), y + uy);
-    Vec4 speed = {};
-    for (int c = 0; c < 2; ++c) {
-      if constexpr (Flip) v[c] = s.flip * (g.read(P.velocity[c].data()) + change[c]) + (1.0 - s.flip) * v[c];
-      g.write(P.velocity[c].data(), v[c]);
-      speed += v[c] * v[c];
-    }
-    far = larger(far, larger(magnitude(ux), magnitude(uy)));
-    fast = larger(fast, speed);
-    kinetic += g.only(0.5 * g.read(P.mass.data()) * speed);
-  }
+        far = larger(far, larger(magnitude(ux), magnitude(uy)));
+        fast = larger(fast, speed);
+        kinetic += g.only(0.5 * g.read(P.mass.data()) * speed);
+      });
   return {largest_lane(far), largest_lane(fast), (kinetic[0] + kinetic[1]) + (kinetic[2] + kinetic[3])};
 }
 

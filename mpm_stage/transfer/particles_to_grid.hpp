@@ -29,63 +29,63 @@ void particles_to_grid(double dt, double h1, const std::array<double, 2>& corner
   constexpr int S = Shape::support, T = Tile<2, Shape>::side;
   const double h = 1.0 / h1;
   const bool affine = !P.affine[0].empty();
-  for (std::size_t p = begin; p < end; p += 4) {
-    // Four particles at a time, until each one's A_j and E_i are known.
-    const Group g(p, end);
-    Vec4 wx[S], dx[S], mx[S], wy[S], dy[S], my[S];
-    const Int4 i0 = Shape::evaluate((g.read(P.position[0].data()) - corner[0]) * h1, wx, dx, mx);
-    const Int4 j0 = Shape::evaluate((g.read(P.position[1].data()) - corner[1]) * h1, wy, dy, my);
-    const Vec4 m = g.read(P.mass.data()), vol = ((Split ? 1.0 : dt) * h1) * g.read(P.volume.data());
-    const Vec4 px = m * g.read(P.velocity[0].data()), py = m * g.read(P.velocity[1].data());
-    Vec4 Cxx = {}, Cxy = {}, Cyx = {}, Cyy = {};
-    if (affine) {
-      const Vec4 mh = m * h;
-      Cxx = mh * g.read(P.affine[0].data());
-      Cxy = mh * g.read(P.affine[1].data());
-      Cyx = mh * g.read(P.affine[2].data());
-      Cyy = mh * g.read(P.affine[3].data());
-    }
-    Vec4 xx = g.read(P.stress[0].data()), yy = g.read(P.stress[1].data());
-    if constexpr (HasPore) {
-      const Vec4 u = g.read(P.pore_pressure.data());
-      xx -= u;
-      yy -= u;
-    }
-    xx *= vol;
-    yy *= vol;
-    const Vec4 xy = vol * g.read(P.stress[3].data());
-    const Vec4 zero = {};
-    Vec4 A[S][4], E[S][4], Q[Split ? S : 1][4], F[Split ? S : 1][4];  // [.][particle]
-    for (int j = 0; j < S; ++j) {
-      Vec4 ax = px * wy[j] + Cxy * my[j], ay = py * wy[j] + Cyy * my[j];
-      Vec4 ex = Cxx * mx[j], ey = Cyx * mx[j];
-      if constexpr (Split) {
-        transposed(zero, -(xy * dy[j]), -(yy * dy[j]), zero, Q[j]);
-        transposed(zero, -(xx * dx[j]), -(xy * dx[j]), zero, F[j]);
-      } else {
-        ax -= xy * dy[j];
-        ay -= yy * dy[j];
-        ex -= xx * dx[j];
-        ey -= xy * dx[j];
-      }
-      transposed(m * wy[j], ax, ay, zero, A[j]);
-      transposed(zero, ex, ey, zero, E[j]);
-    }
-    for (int k = 0; k < g.count; ++k) {
-      const int at = j0[k] * T + i0[k];
-      Vec4 w[S];
-      for (int i = 0; i < S; ++i) w[i] = splat(wx[i][k]);
-      for (int j = 0; j < S; ++j) {
-        Vec4* node = momentum + at + j * T;
-        const Vec4 wj = splat(wy[j][k]);
-        for (int i = 0; i < S; ++i) node[i] += A[j][k] * w[i] + E[i][k] * wj;
-        if constexpr (Split) {
-          Vec4* push = force + at + j * T;
-          for (int i = 0; i < S; ++i) push[i] += Q[j][k] * w[i] + F[i][k] * wj;
+  for_each_group(
+      begin, end, [&](const auto& g) __attribute__((always_inline)) {
+        // Four particles at a time, until each one's A_j and E_i are known.
+        Vec4 wx[S], dx[S], mx[S], wy[S], dy[S], my[S];
+        const Int4 i0 = Shape::evaluate((g.read(P.position[0].data()) - corner[0]) * h1, wx, dx, mx);
+        const Int4 j0 = Shape::evaluate((g.read(P.position[1].data()) - corner[1]) * h1, wy, dy, my);
+        const Vec4 m = g.read(P.mass.data()), vol = ((Split ? 1.0 : dt) * h1) * g.read(P.volume.data());
+        const Vec4 px = m * g.read(P.velocity[0].data()), py = m * g.read(P.velocity[1].data());
+        Vec4 Cxx = {}, Cxy = {}, Cyx = {}, Cyy = {};
+        if (affine) {
+          const Vec4 mh = m * h;
+          Cxx = mh * g.read(P.affine[0].data());
+          Cxy = mh * g.read(P.affine[1].data());
+          Cyx = mh * g.read(P.affine[2].data());
+          Cyy = mh * g.read(P.affine[3].data());
         }
-      }
-    }
-  }
+        Vec4 xx = g.read(P.stress[0].data()), yy = g.read(P.stress[1].data());
+        if constexpr (HasPore) {
+          const Vec4 u = g.read(P.pore_pressure.data());
+          xx -= u;
+          yy -= u;
+        }
+        xx *= vol;
+        yy *= vol;
+        const Vec4 xy = vol * g.read(P.stress[3].data());
+        const Vec4 zero = {};
+        Vec4 A[S][4], E[S][4], Q[Split ? S : 1][4], F[Split ? S : 1][4];  // [.][particle]
+        for (int j = 0; j < S; ++j) {
+          Vec4 ax = px * wy[j] + Cxy * my[j], ay = py * wy[j] + Cyy * my[j];
+          Vec4 ex = Cxx * mx[j], ey = Cyx * mx[j];
+          if constexpr (Split) {
+            transposed(zero, -(xy * dy[j]), -(yy * dy[j]), zero, Q[j]);
+            transposed(zero, -(xx * dx[j]), -(xy * dx[j]), zero, F[j]);
+          } else {
+            ax -= xy * dy[j];
+            ay -= yy * dy[j];
+            ex -= xx * dx[j];
+            ey -= xy * dx[j];
+          }
+          transposed(m * wy[j], ax, ay, zero, A[j]);
+          transposed(zero, ex, ey, zero, E[j]);
+        }
+        for (int k = 0; k < g.count; ++k) {
+          const int at = j0[k] * T + i0[k];
+          Vec4 w[S];
+          for (int i = 0; i < S; ++i) w[i] = splat(wx[i][k]);
+          for (int j = 0; j < S; ++j) {
+            Vec4* node = momentum + at + j * T;
+            const Vec4 wj = splat(wy[j][k]);
+            for (int i = 0; i < S; ++i) node[i] += A[j][k] * w[i] + E[i][k] * wj;
+            if constexpr (Split) {
+              Vec4* push = force + at + j * T;
+              for (int i = 0; i < S; ++i) push[i] += Q[j][k] * w[i] + F[i][k] * wj;
+            }
+          }
+        }
+      });
 }
 
 template <class Shape, bool Split, bool HasPore>

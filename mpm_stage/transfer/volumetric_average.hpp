@@ -38,7 +38,8 @@ struct LinearCell {
   Int4 first{};
   Vec4 weight[1 << Dim], fraction[Dim];
 
-  [[gnu::always_inline]] LinearCell(const Particles<Dim>& P, const Group& g, const std::array<double, Dim>& corner,
+  template <class G>
+  [[gnu::always_inline]] LinearCell(const Particles<Dim>& P, const G& g, const std::array<double, Dim>& corner,
                                     double h1) {
     int stride = 1;
     for (int d = 0; d < Dim; ++d, stride *= Side) {
@@ -60,8 +61,8 @@ struct LinearCell {
 };
 
 // Total mean stress, Pa.
-template <int Dim>
-[[gnu::always_inline]] inline Vec4 mean_stress(const Particles<Dim>& P, const Group& g) {
+template <int Dim, class G>
+[[gnu::always_inline]] inline Vec4 mean_stress(const Particles<Dim>& P, const G& g) {
   const Vec4 m = (g.read(P.stress[0].data()) + g.read(P.stress[1].data()) + g.read(P.stress[2].data())) * (1.0 / 3.0);
   return P.pore_pressure.empty() ? m : m - g.read(P.pore_pressure.data());
 }
@@ -72,29 +73,29 @@ void scatter_volumetric(const Particles<Dim>& P, std::size_t begin, std::size_t 
                         const std::array<double, Dim>& corner, double h1, const std::array<double, Dim>& body,
                         AveragedNode* tile) {
   const double h = 1.0 / h1;
-  for (std::size_t p = begin; p < end; p += 4) {
-    const Group g(p, end);
-    const LinearCell<Dim, Tile<Dim, Shape>::side> cell(P, g, corner, h1);
-    const Vec4 v = g.read(P.volume.data()), mass = g.read(P.mass.data());
-    Vec4 trace = {};
-    for (int d = 0; d < Dim; ++d) trace += g.read(P.gradient[d * (Dim + 1)].data());
-    trace *= v;
-    // Mean stress at a node: s - rho b (x_node - x_p).
-    Vec4 at_first = v * mean_stress(P, g), step[Dim];
-    for (int d = 0; d < Dim; ++d) {
-      step[d] = mass * (-body[d] * h);
-      at_first -= cell.fraction[d] * step[d];
-    }
-    for (int n = 0; n < (1 << Dim); ++n) {
-      Vec4 stress = at_first;
-      for (int d = 0; d < Dim; ++d)
-        if (n >> d & 1) stress += step[d];
-      const Vec4& w = cell.weight[n];
-      Vec4 give[4] = {w * trace, w * v, w * stress, Vec4{}};
-      transpose(give[0], give[1], give[2], give[3]);
-      for (int k = 0; k < g.count; ++k) tile[cell.first[k] + cell.offset(n)] += give[k];
-    }
-  }
+  for_each_group(
+      begin, end, [&](const auto& g) __attribute__((always_inline)) {
+        const LinearCell<Dim, Tile<Dim, Shape>::side> cell(P, g, corner, h1);
+        const Vec4 v = g.read(P.volume.data()), mass = g.read(P.mass.data());
+        Vec4 trace = {};
+        for (int d = 0; d < Dim; ++d) trace += g.read(P.gradient[d * (Dim + 1)].data());
+        trace *= v;
+        // Mean stress at a node: s - rho b (x_node - x_p).
+        Vec4 at_first = v * mean_stress(P, g), step[Dim];
+        for (int d = 0; d < Dim; ++d) {
+          step[d] = mass * (-body[d] * h);
+          at_first -= cell.fraction[d] * step[d];
+        }
+        for (int n = 0; n < (1 << Dim); ++n) {
+          Vec4 stress = at_first;
+          for (int d = 0; d < Dim; ++d)
+            if (n >> d & 1) stress += step[d];
+          const Vec4& w = cell.weight[n];
+          Vec4 give[4] = {w * trace, w * v, w * stress, Vec4{}};
+          transpose(give[0], give[1], give[2], give[3]);
+          for (int k = 0; k < g.count; ++k) tile[cell.first[k] + cell.offset(n)] += give[k];
+        }
+      });
 }
 
 inline NodeMean node_mean(const AveragedNode& node) {
@@ -108,21 +109,22 @@ template <int Dim, class Shape>
 void gather_volumetric(const Particles<Dim>& P, std::size_t begin, std::size_t end,
                        const std::array<double, Dim>& corner, double h1, double relaxation, const NodeMean* mean,
                        double* trace, double* shift) {
-  for (std::size_t p = begin; p < end; p += 4) {
-    const Group g(p, end);
-    const LinearCell<Dim, Tile<Dim, Shape>::side> cell(P, g, corner, h1);
-    Vec4 increment = {}, stress = {};
-    for (int n = 0; n < (1 << Dim); ++n) {
-      const auto at = [&](int k) { return reinterpret_cast<const double*>(mean + cell.first[k] + cell.offset(n)); };
-      Vec4 a, b;
-      transpose_pairs(at(0), at(1), at(2), at(3), a, b);
-      increment += cell.weight[n] * a;
-      stress += cell.weight[n] * b;
-    }
-    const Group of_run(p - begin, end - begin);
-    of_run.write(trace, increment);
-    of_run.write(shift, relaxation * (stress - mean_stress(P, g)));
-  }
+  for_each_group(
+      begin, end, [&](const auto& g) __attribute__((always_inline)) {
+        const LinearCell<Dim, Tile<Dim, Shape>::side> cell(P, g, corner, h1);
+        Vec4 increment = {}, stress = {};
+        for (int n = 0; n < (1 << Dim); ++n) {
+          const auto at = [&](int k) { return reinterpret_cast<const double*>(mean + cell.first[k] + cell.offset(n)); };
+          Vec4 a, b;
+          transpose_pairs(at(0), at(1), at(2), at(3), a, b);
+          increment += cell.weight[n] * a;
+          stress += cell.weight[n] * b;
+        }
+        auto of_run = g;
+        of_run.first -= begin;
+        of_run.write(trace, increment);
+        of_run.write(shift, relaxation * (stress - mean_stress(P, g)));
+      });
 }
 
 }  // namespace tailrun::mpm

@@ -21,29 +21,32 @@ double flop_rate = 0.0;           // flops/s of a core
 // Bytes that a step has to move between memory and core per particle when the block does not fit into the caches: each
 // column that is read counts once and each that is written twice (fetch and write back); tiles and nodes are left out.
 double bytes_per_step(const BlockOptions& o) {
-  const bool affine = o.solver.transfer != mpm::TransferName::flip, flip = o.solver.transfer != mpm::TransferName::apic;
+  const bool affine = o.solver.transfer != mpm::TransferName::flip;
   const int affine_columns = affine ? 4 : 0, pore = o.pore_pressure != mpm::PorePressure::total ? 1 : 0;
   const bool averaging = o.averaged && o.solver.volumetric_average;
   const int strength = o.model == mpm::Model::mohr_coulomb || o.model == mpm::Model::tresca ? 1 : 0;
-  // G2P: position and velocity written, affine and gradient written over, mass read.
-  int columns = 2 * 2 + (flip ? 2 * 2 : 2 * 2) + 2 * affine_columns + 2 * 4 + 1;
-  // Average: position, volume, mass, gradient's diagonal, three stresses read once more for the nodes' sums.
-  if (averaging) columns += 2 + 1 + 1 + 2 + 3 + pore;
+  // G2P: position, velocity, affine and gradient written, mass read.
+  int columns = 2 * 2 + 2 * 2 + 2 * affine_columns + 2 * 4 + 1;
+  // Average, in the same pass: volume and three stresses read besides what G2P has just had.
+  if (averaging) columns += 1 + 3 + pore;
   // Stress and P2G of a block, one pass: gradient, position, velocity, affine and mass read; stress, volume, plastic
   // strain and pore pressure written; strength read.
   columns += 4 + 2 + 2 + affine_columns + 1 + 2 * (4 + 1 + strength + pore) + strength;
   return 8.0 * columns;
 }
 
-// Floating point operations of a step per particle with quadratic shape functions, counted from the formulae: weights
-// of two directions, 9 nodes of 4 lanes in both transfers, gradient, return mapping.
+// Floating point operations of a step per particle with quadratic shape functions and an affine transfer, counted from
+// the formulae (a multiply-add is two; lanes that carry nothing do not count).
 double flops_per_step(const BlockOptions& o) {
   const bool flip = o.solver.transfer != mpm::TransferName::apic;
-  const double weights = 2 * 22.0;
-  const double gather = 9 * 8 + 3 * 16 + 9 * 4 + 3 * 4 + (flip ? 9 * 9 + 10 : 0) + 40;
-  const double scatter = 9 * 16 + 3 * 20 + 3 * 16 + (flip ? 9 * 16 + 6 * 8 : 0) + 30;
-  const double stress = o.model == mpm::Model::mohr_coulomb ? 190 : o.model == mpm::Model::tresca ? 165 : 70;
-  return 2 * weights + gather + scatter + stress + (o.averaged && o.solver.volumetric_average ? 110 : 0);
+  const double weights = 2 * 22;
+  // 9 nodes x 2 components x 3 sums, 3 rows x 2 components x 5 sums; change; midpoint gradient, motion, energy.
+  const double gather = 9 * 2 * 3 * 2 + 3 * 2 * 5 * 2 + (flip ? 9 * 2 * 2 + 3 * 2 * 2 + 8 : 0) + 34;
+  // Factors of 3 rows and 3 columns; 9 nodes x 3 values (m, px, py) x 2 products, and 2 values of forces.
+  const double scatter = 14 + 3 * 17 + 9 * 3 * 4 + (flip ? 9 * 2 * 4 : 0);
+  const double stress = o.model == mpm::Model::mohr_coulomb ? 150 : o.model == mpm::Model::tresca ? 125 : 50;
+  const double average = 2 * 10 + 10 + 4 * (3 * 2 + 2) + 4 * 2 * 2 + 6;
+  return 2 * weights + gather + scatter + stress + (o.averaged && o.solver.volumetric_average ? average : 0.0);
 }
 
 void steps(benchmark::State& state, BlockOptions options) {
