@@ -32,9 +32,10 @@ def strip_footing(r):
 
 
 def vertical_cut(r):
-    """Stability numbers from 3.3 to 4.4: where the crest goes from standing to falling, against 3.83 (Taylor 1937)."""
+    """Where the crest goes from standing to falling, against 3.83 (Taylor 1937). Standing, it settles by less than 0.5 %
+    of the height; a cut 5 % too high stands again once it has lost about 5 %, so more than 2 % counts as a fall."""
     standing = []
-    for number in (3.447, 3.6385, 3.83, 4.0215, 4.213):
+    for number in (3.6385, 3.83, 4.0215):
         scene = r.scene()
         scene["materials"]["soil"]["cohesion"] = 2000 * G * 5.0 / number
         run = r.run(scene, f"number{number}")
@@ -43,7 +44,7 @@ def vertical_cut(r):
         late = t > 0.75 * t[-1]
         rate = (crest[late][0] - crest[-1]) / (t[-1] - t[late][0])
         print(f"     gamma H / c = {number}: crest {(crest[0] - crest[-1]) / 5.0:.4f} H lower, still {rate / 5.0:.2e} H per s")
-        standing.append((number, (crest[0] - crest[-1]) / 5.0 < 0.05))
+        standing.append((number, (crest[0] - crest[-1]) / 5.0 < 0.02))
     stood = max((n for n, s in standing if s), default=0.0)
     fell = min((n for n, s in standing if not s), default=math.inf)
     found = 0.5 * (stood + fell) if stood > 0.0 and math.isfinite(fell) else math.nan
