@@ -51,6 +51,7 @@ def main():
         pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
         (pathlib.Path(folder) / f"mpm_{name}.json").write_text(json.dumps(entries, indent=1) + "\n")
     path = pathlib.Path(output) / "summary.json"
+    path.parent.mkdir(parents=True, exist_ok=True)
     summary = json.loads(path.read_text()) if path.exists() else {"title": name}
     summary["verification"] = report
     path.write_text(json.dumps(summary, indent=2) + "\n")
