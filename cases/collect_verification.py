@@ -3,7 +3,7 @@
 
     collect_verification.py out/verification -o out/verification.json [--document docs/verification.md]
 
-The folder holds ctest.xml (JUnit) and, for each test that measures errors, <name>.json: one object or a list of them
+The folder holds ctest.xml (JUnit; several ctest*.xml where the tests ran in parts) and, for each test that measures errors, <name>.json: one object or a list of them
 with name (the test's), row (of the verification table), quantity, error, ceiling, and optionally against, seconds,
 compare ("at_least" where the figure must reach the ceiling) and pictures ([{"file", "caption"}], files beside it).
 Tests find the folder in the environment variable TAILRUN_VERIFICATION_DIR. The document has a table for each stage and
@@ -116,11 +116,11 @@ def main():
     parser.add_argument("-o", "--output", type=Path, required=True)
     parser.add_argument("--document", type=Path, help="Markdown file to write")
     arguments = parser.parse_args()
-    record = arguments.folder / "ctest.xml"
-    if not record.exists():
-        print(f"{record}: no such file; did ctest run?", file=sys.stderr)
+    records = sorted(arguments.folder.glob("ctest*.xml"))
+    if not records:
+        print(f"{arguments.folder / 'ctest.xml'}: no such file; did ctest run?", file=sys.stderr)
         return 1
-    rows = collect(arguments.folder, ctest_record(record))
+    rows = collect(arguments.folder, {name: row for record in records for name, row in ctest_record(record).items()})
     arguments.output.write_text(json.dumps(rows, indent=1) + "\n")
     for row in rows:
         error = f"{figure(row['error'])} ({figure(row['ceiling'])})" if "error" in row else ""
