@@ -10,6 +10,10 @@
 
 namespace tailrun::mpm {
 
+// Cells: what counts as closed. A stiff body lifts off by less than this with each of its vibrations; were each of
+// these gaps held open, the ground would push in blows and friction, which follows the push, would let go in between.
+constexpr double closed_gap = 0.01;
+
 constexpr double no_gap_known = std::numeric_limits<double>::infinity();
 
 // Least value wins where tiles overlap.
@@ -47,7 +51,7 @@ void scatter_gaps(const Particles<Dim>& P, std::size_t begin, std::size_t end, c
       clearance += weight * distance[at];
     }
     const double size = Dim == 2 ? std::sqrt(P.volume[p]) : std::cbrt(P.volume[p]);
-    clearance -= 0.5 * size;
+    clearance -= 0.5 * size + closed_gap / h1;
     if (!(clearance < 2.0 / h1)) continue;
     for (int k = 0; k < (Dim == 3 ? S : 1); ++k)
       for (int j = 0; j < S; ++j)
