@@ -45,9 +45,8 @@ def martin_moyce(r):
 
 
 def column_3d(r):
-    """Runout of cylinders of three heights against Lube et al. (2004), who found (r - r0) / r0 = 1.24 a up to a = 1.7 for
-    all grains they let go; the ceiling is the scatter of their points about that line. The deposit's edge is where the
-    sand is thinner than a particle's layer."""
+    """Runout of cylinders of three heights against Lube et al. (2004): (r - r0) / r0 = 1.24 a up to a = 1.7. The ceiling
+    of 10 % is this test's own choice, and so is the edge: where half a layer of particles still lies."""
     rows = []
     for aspect in (0.5, 1.0, 1.5):
         scene = r.scene()
