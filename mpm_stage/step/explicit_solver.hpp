@@ -232,6 +232,7 @@ class ExplicitSolver final : public Solver<Dim> {
 }  // namespace tailrun::mpm
 
 #include "mpm_stage/step/explicit_solver_phases.hpp"
+#include "mpm_stage/step/explicit_solver_upkeep.hpp"
 
 namespace tailrun::mpm {
 

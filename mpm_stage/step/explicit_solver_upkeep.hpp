@@ -1,0 +1,187 @@
+// Upkeep of the explicit solver: the layout after a sort, its state for checkpoints, and what it says of itself;
+// included by explicit_solver.hpp.
+#pragma once
+
+#include "mpm_stage/step/explicit_solver.hpp"
+
+namespace tailrun::mpm {
+
+// The grains' volume is what counts: at most a quarter more than that of the material's loosest particle at the start,
+// about what lies between a loose sand's void ratio and the loosest possible (0.8 and 1.2).
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::limit_volumes() {
+  std::vector<double> loosest(constants_.size(), 0.0);
+  for (std::size_t p = 0; p < P_.count(); ++p)
+    loosest[P_.material[p]] = std::max(loosest[P_.material[p]], P_.volume[p] / P_.mass[p]);
+  for (std::size_t m = 0; m < constants_.size(); ++m)
+    if (loosest[m] > 0.0) constants_[m].largest_specific_volume = 1.25 * loosest[m];
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::sort() {
+  const auto since = Clock::now();
+  std::vector<std::uint8_t> keep;
+  if (leaving_) {
+    keep.assign(P_.count(), 1);
+    for (std::size_t p = 0; p < P_.count(); ++p)
+      for (int d = 0; d < Dim; ++d)
+        if (P_.position[d][p] < walls_.low[d] || P_.position[d][p] > walls_.high[d]) keep[p] = 0;
+    for (std::size_t p = 0; p < P_.count(); ++p) {
+      if (keep[p]) continue;
+      if (walls_.leaving == LeavingParticles::error) fail(p, p + 1, "left the domain (see domain/leaving_particles)");
+      removed_.push_back(P_.identity[p]);
+      work_.removed += 0.5 * P_.mass[p] * speed_squared(p);
+    }
+  }
+  grid_.sort(P_, keep);
+  if (grid_.occupied() == 0) throw ComputationError("no particle is left in the domain");
+  lay_out();
+  ++sorts_;
+  drift_ = 0.0;
+  leaving_ = false;
+
+  // Wave speeds follow the lowest density of each material.
+  std::vector<double> density(constants_.size(), 1e300);
+  for (std::size_t p = 0; p < P_.count(); ++p)
+    density[P_.material[p]] = std::min(density[P_.material[p]], P_.mass[p] / P_.volume[p]);
+  wave_speed_.assign(constants_.size(), 0.0);
+  viscous_limit_ = 1e30;
+  for (std::size_t m = 0; m < constants_.size(); ++m) {
+    if (density[m] > 1e299) continue;
+    wave_speed_[m] = std::sqrt(constants_[m].wave_modulus() / density[m]);
+    if (constants_[m].model == Model::newtonian_fluid && constants_[m].consistency > 0.0)
+      viscous_limit_ =
+          std::min(viscous_limit_, options_.courant * h_ * h_ * density[m] / (2.0 * Dim * constants_[m].consistency));
+  }
+  add_time(seconds_.sort, since);
+}
+
+// Memory and neighbours of the grid's blocks.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
+  ground_.update(grid_);
+  mirrors_.update(grid_, wall_nodes_, Shape::support == 4 ? 2 : 1);
+  tiles_.resize(grid_.occupied() * tile_nodes);
+  if (Split) forces_.resize(tiles_.size());
+  velocity_.resize(grid_.active() * block_nodes);
+  if (separate_change) change_.resize(velocity_.size());
+  if (mirrors_.any()) {
+    sums_.resize(velocity_.size());
+    if (Split) force_sums_.resize(velocity_.size());
+  }
+  if (averaging_) {
+    averaged_tiles_.resize(tiles_.size());
+    averaged_.resize(velocity_.size());
+  }
+  if (ground_.any()) {
+    gap_tiles_.resize(tiles_.size());
+    grip_.resize(velocity_.size());
+    spread_.resize(velocity_.size());
+  }
+  grid_sums_.resize(grid_.active());
+  motion_.resize(grid_.occupied());
+  stress_work_.resize(grid_.occupied());
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+SolverState<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::state() const {
+  SolverState<Dim> s;
+  s.blocks = grid_.occupied_indices();
+  s.first = grid_.first_particles();
+  s.wave_speed = wave_speed_;
+  s.next_dt = next_dt_;
+  s.viscous_limit = viscous_limit_;
+  s.drift = drift_;
+  s.fastest_wave = fastest_wave_;
+  s.sorts = sorts_;
+  s.work = work_;
+  s.seconds = seconds_;
+  s.impulse = impulse_;
+  s.removed = removed_;
+  s.held = held();
+  return s;
+}
+
+// The nodes' sums are not kept: P2G makes the same ones again.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::resume(Particles<Dim> particles, const SolverState<Dim>& s) {
+  P_ = std::move(particles);
+  grid_.restore(s.blocks, s.first, P_.material);
+  lay_out();
+  wave_speed_ = s.wave_speed;
+  next_dt_ = s.next_dt;
+  viscous_limit_ = s.viscous_limit;
+  drift_ = s.drift;
+  fastest_wave_ = s.fastest_wave;
+  sorts_ = s.sorts;
+  work_ = s.work;
+  seconds_ = s.seconds;
+  impulse_ = s.impulse;
+  removed_ = s.removed;
+  for (const std::int32_t k : s.held) held_[static_cast<std::size_t>(k)] = 1;
+  particles_to_grid();
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+double ExplicitSolver<Dim, Shape, Split, Transfer>::unbalanced_force_ratio(const std::array<double, Dim>& body) const {
+  AlignedVector<Vec4> momentum(grid_.occupied() * tile_nodes, Vec4{}), force(grid_.occupied() * tile_nodes, Vec4{});
+  for (std::size_t b = 0; b < grid_.occupied(); ++b) {
+    const std::size_t begin = grid_.first_particle(b), end = grid_.last_particle(b);
+    Vec4 *m = momentum.data() + b * tile_nodes, *f = force.data() + b * tile_nodes;
+    if (P_.pore_pressure.empty())
+      mpm::particles_to_grid<Shape, true, false>(0.0, h1_, corner(b), P_, begin, end, m, f);
+    else
+      mpm::particles_to_grid<Shape, true, true>(0.0, h1_, corner(b), P_, begin, end, m, f);
+  }
+  double unbalanced = 0.0, weight = 0.0;
+  for (std::size_t a = 0; a < grid_.active(); ++a) {
+    Vec4 m[block_nodes], f[block_nodes];
+    gather_tiles<Dim, Shape>(grid_, a, momentum.data(), m);
+    gather_tiles<Dim, Shape>(grid_, a, force.data(), f);
+    const NodeContact* contact = ground_.of_block(a);
+    for (int n = 0; n < block_nodes; ++n) {
+      if (m[n][0] <= mass_cutoff_ || (contact && contact[n].count > 0)) continue;
+      bool held = false;
+      for (int d = 0, k = n; d < Dim; ++d, k /= Block<Dim>::cells) {
+        const int node = grid_.active_index(a)[d] * Block<Dim>::cells + k % Block<Dim>::cells;
+        for (int s = 0; s < 2; ++s) {
+          const auto& side = wall_nodes_.side[d][s];
+          held = held || (side.kind != WallKind::open && (s == 0 ? node <= side.node : node >= side.node));
+        }
+      }
+      if (held) continue;
+      for (int d = 0; d < Dim; ++d) {
+        const double g = m[n][0] * body[d], r = f[n][1 + d] + g;
+        unbalanced += r * r;
+        weight += g * g;
+      }
+    }
+  }
+  return weight > 0.0 ? std::sqrt(unbalanced / weight) : 0.0;
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::fail(std::size_t begin, std::size_t end,
+                                                       const std::string& what) const {
+  // Names the particle that is not finite, else the fastest of the block.
+  std::size_t worst = begin;
+  double most = -1.0;
+  for (std::size_t p = begin; p < end; ++p) {
+    const double s = speed_squared(p);
+    if (!std::isfinite(s)) {
+      worst = p;
+      break;
+    }
+    if (s > most) {
+      most = s;
+      worst = p;
+    }
+  }
+  std::string place;
+  for (int d = 0; d < Dim; ++d) place += fmt::format("{}{:.6g}", d ? ", " : "", P_.position[d][worst]);
+  throw ComputationError(fmt::format("particle {} of material '{}' at ({}) m, speed {:.4g} m/s, {}", P_.identity[worst],
+                                     materials_[P_.material[worst]].name, place, std::sqrt(speed_squared(worst)),
+                                     what));
+}
+
+}  // namespace tailrun::mpm
