@@ -245,6 +245,7 @@ TEST_CASE("material definition: a wrong model, a value out of range, a missing k
   const auto good = read(R"({"model": "pm4sand", "relative_density": 0.5, "hpo": 0.4, "density": 1800,
                              "compatibility": "opensees"})");
   CHECK(std::get<Pm4SandParameters>(good.model).compatibility == Pm4Compatibility::opensees);
-  const auto elastic = read(R"({"model": "linear_elastic", "youngs_modulus": 2.6, "poisson_ratio": 0.3, "density": 1})");
+  const auto elastic =
+      read(R"({"model": "linear_elastic", "youngs_modulus": 2.6, "poisson_ratio": 0.3, "density": 1})");
   CHECK(std::get<LinearElasticParameters>(elastic.model).shear_modulus == doctest::Approx(1.0));
 }
