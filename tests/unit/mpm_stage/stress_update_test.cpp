@@ -29,6 +29,17 @@ MaterialConstants elastic(Model model = Model::linear_elastic) {
   return constants_of(m, 1.0);
 }
 
+// Cohesionless where the particle's strength is zero.
+MaterialConstants sand(PorePressure pore_pressure) {
+  Material m;
+  m.model = Model::mohr_coulomb;
+  m.youngs_modulus = 5e7;
+  m.poisson_ratio = 0.3;
+  m.friction_angle = 34.0;
+  m.pore_pressure = pore_pressure;
+  return constants_of(m, 1.0);
+}
+
 void update(const MaterialConstants& k, Particles<2>& P, const std::array<double, 4>& A, double dt) {
   const auto G = midpoint_gradient(A);
   for (int i = 0; i < 4; ++i) P.gradient[i][0] = G[i];
@@ -104,13 +115,7 @@ TEST_CASE("softening: strength falls to its residual over the strain given") {
 }
 
 TEST_CASE("soil that opens loses its frozen pore pressure, and its work is u dV") {
-  Material m;
-  m.model = Model::mohr_coulomb;
-  m.youngs_modulus = 5e7;
-  m.poisson_ratio = 0.3;
-  m.friction_angle = 34.0;
-  m.pore_pressure = PorePressure::frozen;
-  MaterialConstants k = constants_of(m, 1.0);
+  const MaterialConstants k = sand(PorePressure::frozen);
   Particles<2> P = one_particle({-5e4, -5e4, -5e4, 0.0});
   P.pore_pressure.assign(1, 8e4);
   P.strength[0] = 0.0;
@@ -136,12 +141,7 @@ TEST_CASE("soil that opens loses its frozen pore pressure, and its work is u dV"
 }
 
 TEST_CASE("voids that open do not count as the soil's volume beyond its limit") {
-  Material m;
-  m.model = Model::mohr_coulomb;
-  m.youngs_modulus = 5e7;
-  m.poisson_ratio = 0.3;
-  m.friction_angle = 34.0;
-  MaterialConstants k = constants_of(m, 1.0);
+  MaterialConstants k = sand(PorePressure::total);
   Particles<2> P = one_particle({0, 0, 0, 0});
   P.strength[0] = 0.0;
   k.largest_specific_volume = 2.0 * P.volume[0] / P.mass[0];
