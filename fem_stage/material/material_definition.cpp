@@ -11,6 +11,12 @@ Pm4Compatibility read_compatibility(const CaseNode& node) {
   return word == "opensees" ? Pm4Compatibility::opensees : Pm4Compatibility::improved;
 }
 
+Pm4BoundingClip read_bounding_clip(const CaseNode& node, Pm4BoundingClip otherwise) {
+  const char* name = otherwise == Pm4BoundingClip::always ? "always" : "simple_shear";
+  return node.choice_or("bounding_clip", {"always", "simple_shear"}, name) == "always" ? Pm4BoundingClip::always
+                                                                                       : Pm4BoundingClip::simple_shear;
+}
+
 void optional_number(const CaseNode& node, const std::string& key, std::string_view unit, Range range, double& value) {
   if (const auto found = node.number_if(key, unit, range)) value = *found;
 }
@@ -26,8 +32,9 @@ double read_shear_modulus(const CaseNode& node, double poisson) {
 }
 
 // Keys that both PM4 models have.
+// `opensees_clip`: what OpenSees does for this material, hence the default of the compatible mode.
 template <class Parameters>
-void read_pm4_common(const CaseNode& node, Parameters& p) {
+void read_pm4_common(const CaseNode& node, Pm4BoundingClip opensees_clip, Parameters& p) {
   p.contraction_rate = node.number("hpo", "1", Range::positive());
   p.density = node.number("density", "kg/m3", Range::positive());
   p.atmospheric_pressure = node.number_or("atmospheric_pressure", "Pa", Range::positive(), p.atmospheric_pressure);
@@ -43,13 +50,15 @@ void read_pm4_common(const CaseNode& node, Parameters& p) {
   p.C_GD = node.number_or("C_GD", "1", {1.0}, p.C_GD);
   p.m = node.number_or("m", "1", {0.0, 0.1, true, false}, p.m);
   p.compatibility = read_compatibility(node);
+  p.bounding_clip =
+      read_bounding_clip(node, p.compatibility == Pm4Compatibility::opensees ? opensees_clip : Pm4BoundingClip::always);
 }
 
 Pm4SandParameters read_pm4sand(const CaseNode& node) {
   Pm4SandParameters p;
   p.relative_density = node.number("relative_density", "1", Range::open(0.0, 1.2));
   optional_number(node, "G0", "1", Range::positive(), p.shear_coefficient);
-  read_pm4_common(node, p);
+  read_pm4_common(node, Pm4BoundingClip::always, p);
   p.e_min = node.number_or("e_min", "1", Range::positive(), p.e_min);
   p.e_max = node.number_or("e_max", "1", {p.e_min, Range::any().high, true, false}, p.e_max);
   p.n_b = node.number_or("n_b", "1", Range::non_negative(), p.n_b);
@@ -70,7 +79,7 @@ Pm4SiltParameters read_pm4silt(const CaseNode& node) {
   }
   p.strength_reduction = node.number_or("strength_reduction", "1", Range::positive(), p.strength_reduction);
   p.shear_coefficient = node.number("G0", "1", Range::positive());
-  read_pm4_common(node, p);
+  read_pm4_common(node, Pm4BoundingClip::simple_shear, p);
   p.modulus_exponent = node.number_or("n_G", "1", Range::between(0.0, 1.0), p.modulus_exponent);
   p.void_ratio = node.number_or("void_ratio", "1", Range::positive(), p.void_ratio);
   p.lambda = node.number_or("lambda", "1", Range::positive(), p.lambda);

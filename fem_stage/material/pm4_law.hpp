@@ -17,6 +17,10 @@ constexpr double sqrt_two = 1.41421356237309504880;
 // alone, memory and records followed within the step, direction-preserving reset.
 enum class Pm4Compatibility { improved, opensees };
 
+// Where stress outside the bounding surface is brought back to it. `simple_shear`: only where both normal stresses are
+// equal (to 5e-8 p_A), as OpenSees' PM4Silt does.
+enum class Pm4BoundingClip { always, simple_shear };
+
 struct Pm4Surfaces {
   double xi = 0.0;   // relative state parameter: xi_R (sand), xi_s = xi/lambda (silt)
   double M_b = 0.0;  // bounding ratio q/p
@@ -49,6 +53,7 @@ struct Pm4Law {
   double index_slope = 0.0;  // its change per unit volumetric strain
   double tolerance = 0.0;    // of the yield function, Pa
   Pm4Compatibility compatibility = Pm4Compatibility::improved;
+  Pm4BoundingClip bounding_clip = Pm4BoundingClip::always;
   bool post_shaking = false;
 };
 

@@ -154,10 +154,7 @@ void finish_step_opensees(const Law& law, const Pm4PointConstants& point, const 
   Pm4Surfaces surfaces = law.surfaces(point, std::max(v.p, point.p_min), index);
   // OpenSees clips at the M_b that it evaluated last, which in an elastic step is an earlier step's.
   if (trial.M_b > 0.0) surfaces.M_b = trial.M_b;
-  // OpenSees' PM4Silt clips only where the normal stresses are equal (to 1e-5 kPa).
-  if (!Law::clips_only_in_simple_shear || std::fabs(v.s.d) < 5e-8 * law.atmospheric_pressure) {
-    clip_to_bounding_surface(law, point, surfaces.M_b, v);
-  }
+  clip_to_bounding_surface(law, point, surfaces.M_b, v);
   const Pm4Moduli moduli = moduli_of(law, point, surfaces, v.p, v.s, v.z_cum);
   trial.G = moduli.G;
   trial.K = moduli.K;

@@ -72,6 +72,9 @@ inline void recentre_cone(const Pm4Law& law, Pm4Variables& v) {
 
 // Scales s so that q/p = M_b at constant p and puts alpha on the same ray. Returns whether it acted.
 inline bool clip_to_bounding_surface(const Pm4Law& law, const Pm4PointConstants& point, double M_b, Pm4Variables& v) {
+  if (law.bounding_clip == Pm4BoundingClip::simple_shear && std::fabs(v.s.d) >= 5e-8 * law.atmospheric_pressure) {
+    return false;
+  }
   const double q = sqrt_two * norm(v.s);
   const bool opensees = law.compatibility == Pm4Compatibility::opensees;
   const double limit = M_b * (opensees ? std::max(v.p, point.p_min) : v.p);

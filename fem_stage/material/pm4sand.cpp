@@ -44,6 +44,7 @@ Pm4SandLaw resolve(const Pm4SandParameters& given) {
   law.index_slope = (1.0 + e0) / (given.e_max - given.e_min);
   law.tolerance = 1e-10 * given.atmospheric_pressure;
   law.compatibility = given.compatibility;
+  law.bounding_clip = given.bounding_clip;
   law.n_b_dense = given.n_b;
   law.n_b_loose = 0.25 * given.n_b;
   law.n_d_dense = given.n_d;

@@ -36,6 +36,7 @@ struct Pm4SandParameters {
   double F_sed_min = unset;               // F_sed,min   1       min(0.03 exp(2.6 D_R), 0.99)             (0, 1]
   double p_sed_o = unset;                 // p_sed,o     Pa      p_A/5                                    > 0
   Pm4Compatibility compatibility = Pm4Compatibility::improved;
+  Pm4BoundingClip bounding_clip = Pm4BoundingClip::always;
 };
 
 // The resolved material and the functions in which it differs from PM4Silt.
@@ -48,7 +49,6 @@ struct Pm4SandLaw : Pm4Law {
   static constexpr bool wet_contraction = false;           // C_wet
   static constexpr double h_p_slope = 7.0;
   static constexpr double h_p_origin = 0.5;
-  static constexpr bool clips_only_in_simple_shear = false;  // OpenSees' way
   static constexpr bool apparent_ratio_starts_at_alpha = false;
 
   Pm4SandParameters given;

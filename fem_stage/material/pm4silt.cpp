@@ -43,6 +43,7 @@ Pm4SiltLaw resolve(const Pm4SiltParameters& given) {
   law.index_slope = -(1.0 + given.void_ratio);
   law.tolerance = 1e-9 * given.atmospheric_pressure;
   law.compatibility = given.compatibility;
+  law.bounding_clip = given.bounding_clip;
   law.inverse_lambda = 1.0 / given.lambda;
   law.log_F_su = std::log(given.strength_reduction);
   law.C_Mb = 1.0 / (std::pow(ratio_of(given.phi_b_max) / law.M, 1.0 / given.n_b_dry) - 1.0);

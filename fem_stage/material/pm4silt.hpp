@@ -40,6 +40,7 @@ struct Pm4SiltParameters {
   double C_G_consolidation = 2.0;         // C_Gconsol        1       2.0                                    >= 1
   double phi_b_max = 60.0;  // phi_b,max        deg     60: M_b,max = 2 sin phi_b,max          (phi_cv, 90)
   Pm4Compatibility compatibility = Pm4Compatibility::improved;
+  Pm4BoundingClip bounding_clip = Pm4BoundingClip::always;
 };
 
 struct Pm4SiltLaw : Pm4Law {
@@ -51,7 +52,6 @@ struct Pm4SiltLaw : Pm4Law {
   static constexpr bool wet_contraction = true;
   static constexpr double h_p_slope = 0.2;
   static constexpr double h_p_origin = 3.0;
-  static constexpr bool clips_only_in_simple_shear = true;  // OpenSees' way
   static constexpr bool apparent_ratio_starts_at_alpha = true;
 
   Pm4SiltParameters given;

@@ -16,7 +16,10 @@ Pm4SiltParameters silt(double strength_ratio, bool opensees) {
   p.shear_coefficient = 500.0;
   p.contraction_rate = 20.0;
   p.density = 1800.0;
-  if (opensees) p.compatibility = Pm4Compatibility::opensees;
+  if (opensees) {
+    p.compatibility = Pm4Compatibility::opensees;
+    p.bounding_clip = Pm4BoundingClip::simple_shear;
+  }
   return p;
 }
 

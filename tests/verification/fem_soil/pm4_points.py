@@ -5,6 +5,13 @@ pm4_points.py FEM_STAGE SCENES_FOLDER ROW MODE OUTPUT_FOLDER
 
 Undrained means constant volume. The tables count reversals passed (0.25, 0.75, 1.25 ...) when the strain limit is first
 exceeded; fem_stage gives the cycle itself, so the last reversal before it is compared.
+
+Two tables are not what the rate equations say, and the improved mode is held against what they do say:
+* Sand that flows at its bounding surface: OpenSees' correction of the yield drift raises p by a share of every piece of
+  1e-5 strain, 4 to 5 % of the stress at 30 % shear. Its scheme driven with increments of 1e-7 loses most of that; this is
+  the reference of the improved mode.
+* OpenSees' PM4Silt brings stress back to the bounding surface in simple shear only. The improved mode does so always,
+  and is compared twice: with OpenSees' rule against the table, and as it is against OpenSees' scheme with the other rule.
 """
 import math
 import pathlib
@@ -47,29 +54,32 @@ def last_reversal(cycles):
     return math.floor((cycles - 0.25) / 0.5 + 1e-9) * 0.5 + 0.25
 
 
-def mixed_path(run, report, mode, expected, ceiling):
-    scene = run.scene("mixed_path.json")
-    ends = np.cumsum([leg["repeats"] for leg in scene["loading"]["path"]])
-    history, _ = run.element("mixed_path.json", mode=mode)
-    worst = 0.0
-    for step, wanted in zip(ends, np.array(expected)):
-        i = int(np.flatnonzero(history["step"] == step)[0])
-        columns = ("mean_effective_stress", "vertical_effective_stress", "shear_stress")
-        p, yy, xy = (history[k][i] / 1e3 for k in columns)
-        found = np.array((2 * p - yy, yy, xy))
-        worst = max(worst, np.linalg.norm(found - wanted) / np.linalg.norm(wanted))
-    report.add(f"stress after the legs of a path with volume change, {MODES[mode]}", worst, ceiling,
-               "OpenSees' material")
+def path_ends(run, mode, finer=1, **material):
+    """Stress (kPa: xx, yy, xy) after each leg of mixed_path.json, its increments cut into `finer` each."""
+    def change(scene):
+        scene["material"].update(material)
+        for leg in scene["loading"]["path"]:
+            leg["increment"] = [x / finer for x in leg["increment"]]
+            leg["repeats"] *= finer
+
+    history, _ = run.element("mixed_path.json", change, mode)
+    ends = np.cumsum([leg["repeats"] * finer for leg in run.scene("mixed_path.json")["loading"]["path"]])
+    rows = [int(np.flatnonzero(history["step"] == step)[0]) for step in ends]
+    p, yy, xy = (history[k][rows] / 1e3
+                 for k in ("mean_effective_stress", "vertical_effective_stress", "shear_stress"))
+    return np.column_stack((2 * p - yy, yy, xy))
 
 
-def monotonic(run, report, mode, file, change, levels, wanted, what, ceiling):
+def largest_distance(found, wanted):
+    return (np.linalg.norm(np.array(found) - wanted, axis=1) / np.linalg.norm(wanted, axis=1)).max()
+
+
+def monotonic(run, mode, file, change, levels, peak):
+    """Shear stress (kPa) at the strain levels, after the peak where that is wanted."""
     _, summary = run.element(file, change, mode)
     found = [e["shear_stress"] / 1e3 for e in summary["shear_stress_at_strain"]
              if any(abs(e["shear_strain"] - level) < 1e-9 for level in levels)]
-    if len(wanted) == len(levels) + 1:
-        found.insert(0, summary["peak_shear_stress"] / 1e3)
-    report.add(f"monotonic simple shear, {what}, {MODES[mode]}",
-               np.abs(np.array(found) / np.array(wanted) - 1.0).max(), ceiling, "OpenSees' material")
+    return np.array([summary["peak_shear_stress"] / 1e3] * peak + found)
 
 
 def cycles_at(run, file, mode, csr, bias=0.0):
@@ -82,12 +92,24 @@ def cycles_at(run, file, mode, csr, bias=0.0):
 
 
 def pm4sand_point(run, report, mode):
-    mixed_path(run, report, mode, SAND_PATH, 0.01)
-    for vertical, wanted in SAND_MONOTONIC.items():
-        def change(scene):
-            scene["initial"]["vertical_effective_stress"] = 1e3 * vertical
-        monotonic(run, report, mode, "monotonic.json", change, (.01, .02, .05, .1, .2, .3), wanted,
-                  f"{vertical:g} kPa", 0.02)
+    report.add(f"stress after the legs of a path with volume change, {MODES[mode]}",
+               largest_distance(path_ends(run, mode), np.array(SAND_PATH)), 0.01, "OpenSees' material")
+    for vertical, table in SAND_MONOTONIC.items():
+        def stresses(mode, finer=1):
+            def change(scene):
+                scene["initial"]["vertical_effective_stress"] = 1e3 * vertical
+                scene["loading"]["shear_strain_increment"] /= finer
+            return monotonic(run, mode, "monotonic.json", change, (.01, .02, .05, .1, .2, .3), peak=True)
+
+        found = stresses(mode)
+        off_table = np.abs(found / table - 1.0).max()
+        if mode == "opensees":
+            report.add(f"monotonic simple shear, {vertical:g} kPa, {MODES[mode]}", off_table, 0.02,
+                       "OpenSees' material")
+        else:
+            report.add(f"monotonic simple shear, {vertical:g} kPa, {MODES[mode]} (off OpenSees' table by "
+                       f"{100 * off_table:.1f} %)", np.abs(found / stresses("opensees", 50) - 1.0).max(), 0.02,
+                       "OpenSees' scheme with increments of 1e-7 strain")
     for file, counts in SAND_CYCLES.items():
         worst, to_3 = 0.0, {}
         for (csr, bias), wanted in counts.items():
@@ -106,11 +128,24 @@ def pm4sand_point(run, report, mode):
 
 
 def pm4silt_point(run, report, mode):
-    mixed_path(run, report, mode, SILT_PATH, 0.02)
+    what = f"stress after the legs of a path with volume change, {MODES[mode]}"
+    table = np.array(SILT_PATH)
+    if mode == "opensees":
+        report.add(what, largest_distance(path_ends(run, mode), table), 0.02, "OpenSees' material")
+    else:
+        report.add(f"{what}, clipped in simple shear only",
+                   largest_distance(path_ends(run, mode, bounding_clip="simple_shear"), table), 0.02,
+                   "OpenSees' material")
+        found = path_ends(run, mode)
+        report.add(f"{what} (off OpenSees' table by {100 * largest_distance(found, table):.1f} %)",
+                   largest_distance(found, path_ends(run, "opensees", 5, bounding_clip="always")), 0.02,
+                   "OpenSees' scheme, clipped always")
     for ratio, wanted in SILT_MONOTONIC.items():
         def change(scene):
             scene["material"]["strength_ratio"] = ratio
-        monotonic(run, report, mode, "monotonic.json", change, (.1, .3), wanted, f"S_u/sigma'_v0 {ratio:g}", 0.02)
+        found = monotonic(run, mode, "monotonic.json", change, (.1, .3), peak=False)
+        report.add(f"monotonic simple shear, S_u/sigma'_v0 {ratio:g}, {MODES[mode]}",
+                   np.abs(found / wanted - 1.0).max(), 0.02, "OpenSees' material")
     worst = 0.0
     for csr, wanted in SILT_CYCLES.items():
         for n, w in zip(cycles_at(run, "cyclic.json", mode, csr), wanted):
