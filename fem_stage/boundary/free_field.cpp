@@ -34,12 +34,13 @@ std::size_t element_behind(const Mesh& mesh, std::int64_t a, std::int64_t b) {
 }
 
 double mean_change_of_pressure(const Model& model, const State& state, std::size_t e) {
-  double sum = 0.0;
+  double now = 0.0, at_rest = 0.0;
   for (std::size_t a = 0; a < 4; ++a) {
     const auto node = static_cast<std::size_t>(model.mesh.quads[4 * e + a]);
-    sum += 0.25 * (state.pressure[node] - state.initial_pressure[node]);
+    now += 0.25 * state.pressure[node];
+    at_rest += 0.25 * state.initial_pressure[node];
   }
-  return sum;
+  return model.pressure_in_stress(e, now) - model.pressure_in_stress(e, at_rest);
 }
 
 }  // namespace
@@ -67,7 +68,7 @@ FreeField::FreeField(const Model& model, const MaterialPoints& points, const Sta
       for (std::size_t a = 0; a < 4; ++a)
         water = std::max(water, state.pressure[static_cast<std::size_t>(mesh.quads[4 * inside + a])]);
       const double stiffness = bulk[inside] + 4.0 / 3.0 * shear[inside] +
-                               (water > 0.0 ? model.options->fluid_bulk_modulus / model.porosity[inside] : 0.0);
+                               (water > 0.0 && model.storage[inside] > 0.0 ? 1.0 / model.storage[inside] : 0.0);
       const double density = side.density > 0.0 ? side.density : model.density[inside];
       const double vs = side.shear_velocity > 0.0 ? side.shear_velocity : std::sqrt(shear[inside] / density);
       const double vp = side.p_velocity > 0.0 ? side.p_velocity : std::sqrt(stiffness / density);

@@ -107,6 +107,13 @@ void require_held(bool held, const char* freedom, const char* stage) {
 }  // namespace
 
 Freedoms geostatic_freedoms(const Model& model) {
+  Freedoms freedoms = consolidation_freedoms(model);
+  for (std::size_t n = 0; n < model.nodes(); ++n)
+    if (model.dry_at_rest[n]) freedoms.fix(static_cast<std::int64_t>(n), freedom_p);
+  return freedoms;
+}
+
+Freedoms consolidation_freedoms(const Model& model) {
   Freedoms freedoms = common_freedoms(model, When::geostatic);
   for (const auto node : model.base_nodes) freedoms.fix(node, freedom_ux);
   for (const auto& line : model.options->boundaries.geostatic_roller_lines)

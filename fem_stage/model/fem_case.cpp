@@ -66,6 +66,15 @@ MeshOptions read_mesh(const CaseNode& node, const std::string& size) {
   return mesh;
 }
 
+AbovePhreaticLine read_above_phreatic_line(const CaseNode& node) {
+  AbovePhreaticLine out;
+  out.soft_fluid = node.choice_or("water", {"drained", "soft_fluid"}, "drained") == "soft_fluid";
+  if (!out.soft_fluid) return out;
+  out.saturation = node.number_or("saturation", "1", Range::between(0.0, 1.0), out.saturation);
+  out.surface_drained = node.choice_or("surface", {"drained", "sealed"}, "drained") == "drained";
+  return out;
+}
+
 GeostaticOptions read_geostatic(const CaseNode& node) {
   GeostaticOptions out;
   out.K0 = node.number_or("K0", "1", Range::open(0.0, 1.0), out.K0);
@@ -167,6 +176,9 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
       if (out.phreatic_line[i] <= out.phreatic_line[i - 2])
         root.fail("phreatic_line", fmt::format("row {}: x must ascend from row to row", i / 2));
   }
+  out.above_phreatic_line = read_above_phreatic_line(root.object_or_empty("above_phreatic_line"));
+  if (out.above_phreatic_line.soft_fluid && out.phreatic_line.empty())
+    root.fail("above_phreatic_line", "the model is dry: a soft fluid needs a phreatic_line to lie above");
   const CaseNode element = root.object_or_empty("element");
   out.pressure_stabilisation =
       element.number_or("pressure_stabilisation", "1", Range::non_negative(), out.pressure_stabilisation);

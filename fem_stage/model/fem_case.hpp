@@ -37,6 +37,13 @@ enum class Seepage {
   hydrostatic,  // rho_f g (level - y) below the phreatic line
 };
 
+// The water above the phreatic line.
+struct AbovePhreaticLine {
+  bool soft_fluid = false;      // false: p = 0 is held there
+  double saturation = 0.9;      // S_r of the soft fluid
+  bool surface_drained = true;  // p = 0 where the soft fluid meets the ground surface
+};
+
 struct GeostaticOptions {
   double K0 = 0.5;  // at-rest ratio of the elastic stage: Poisson ratio K0 / (1 + K0)
   Seepage seepage = Seepage::isotropic;
@@ -92,10 +99,11 @@ struct FemCase {
   Provenance provenance;
   std::vector<std::string> echo;
   MeshOptions mesh;
-  double gravity = 9.81;                 // m/s2
-  double fluid_density = 1000.0;         // kg/m3
-  double fluid_bulk_modulus = 2.2e9;     // Pa
-  std::vector<double> phreatic_line;     // m, (k, 2), ascending x; empty = dry
+  double gravity = 9.81;              // m/s2
+  double fluid_density = 1000.0;      // kg/m3
+  double fluid_bulk_modulus = 2.2e9;  // Pa
+  std::vector<double> phreatic_line;  // m, (k, 2), ascending x; empty = dry
+  AbovePhreaticLine above_phreatic_line;
   double pressure_stabilisation = 0.25;  // alpha = this h^2 / (K + 4 G / 3)
   int pressure_points = 2;
   HourglassShape hourglass_shape = HourglassShape::constant_jacobian;

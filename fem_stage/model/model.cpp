@@ -9,6 +9,7 @@
 
 #include "common/error.hpp"
 #include "fem_stage/boundary/phreatic_line.hpp"
+#include "fem_stage/boundary/soft_fluid.hpp"
 #include "fem_stage/boundary/stage_freedoms.hpp"
 #include "fem_stage/mesh/gmsh_mesh.hpp"
 
@@ -84,6 +85,16 @@ void hold_pressure(Model& model, std::int64_t node, double value) {
 
 void gather_held_pressures(const FemCase& options, Model& model) {
   model.pressure_fixed = on_or_above_phreatic_line(model.mesh, options.phreatic_line);
+  model.dry_at_rest.assign(model.nodes(), 0);
+  if (options.above_phreatic_line.soft_fluid) {
+    const bool drained = options.above_phreatic_line.surface_drained;
+    const std::vector<char> surface = drained ? on_ground_surface(model.mesh) : std::vector<char>(model.nodes(), 0);
+    for (std::size_t n = 0; n < model.nodes(); ++n) {
+      if (!model.pressure_fixed[n] || surface[n]) continue;
+      model.pressure_fixed[n] = 0;
+      model.dry_at_rest[n] = 1;
+    }
+  }
   model.held_pressure.assign(model.nodes(), 0.0);
   for (const auto& held : options.boundaries.held_pressure)
     for (const auto node : nodes_at(model.mesh, {held.line, {}, held.where})) {
@@ -143,7 +154,8 @@ Model build_model(const FemCase& options, const std::filesystem::path& mesh_file
   }
   model.elements = build_sspquadup(mesh, {}, model.thickness, options.hourglass_shape, options.pressure_points);
   const std::size_t count = model.count();
-  for (auto* array : {&model.density, &model.porosity, &model.bulk_initial, &model.shear_initial, &model.stabilisation})
+  for (auto* array : {&model.density, &model.porosity, &model.storage, &model.bulk_initial, &model.shear_initial,
+                      &model.stabilisation})
     array->resize(count);
   const MaterialPoints points(options.materials, material_of_element);
   points.density(model.density);
@@ -153,7 +165,10 @@ Model build_model(const FemCase& options, const std::filesystem::path& mesh_file
     const double h = model.elements.size[e];
     model.stabilisation[e] =
         options.pressure_stabilisation * h * h / (model.bulk_initial[e] + 4.0 / 3.0 * model.shear_initial[e]);
+    model.storage[e] = model.porosity[e] * (1.0 / options.fluid_bulk_modulus);
   }
+  model.soft_fluid.assign(count, 0);
+  if (options.above_phreatic_line.soft_fluid) fill_with_soft_fluid(model);
 
   gather_adjacency(model);
   model.nodal_mass.assign(model.nodes(), 0.0);

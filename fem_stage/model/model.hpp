@@ -27,7 +27,10 @@ struct Model {
   std::vector<double> permeability_x, permeability_y;  // m4/(N s), (M): k / (rho_f g)
   std::vector<double> stabilisation;                   // m4/N, (M): alpha of the pressure stabilisation
   std::vector<double> nodal_mass;                      // kg, (N), lumped
+  std::vector<double> storage;   // 1/Pa, (M): n / K of the water, soft above the phreatic line where the case says so
+  std::vector<char> soft_fluid;  // (M): water above the phreatic line that can be pushed up (soft_fluid.hpp)
   std::vector<char> pressure_fixed;   // (N): p held: on and above the phreatic line, drained lines, under a pond
+  std::vector<char> dry_at_rest;      // (N): p = 0 in the geostatic stage only, where a soft fluid is
   std::vector<double> held_pressure;  // Pa, (N): the value where it is held, 0 elsewhere
   std::vector<NodalLoad> loads;       // beside gravity: lines, points, ponded water
   std::vector<double> base_area;      // m2, per node of base_nodes: tributary area
@@ -37,6 +40,10 @@ struct Model {
   // (node -> elements) in compressed rows, so that nodal sums are gathered in a fixed order by any thread
   std::vector<int> adjacency_start, adjacency;  // entries are 4 * element + local node
 
+  // Pa: the part of an element's mean pore pressure that total stress feels.
+  double pressure_in_stress(std::size_t e, double pressure) const {
+    return soft_fluid[e] && pressure < 0.0 ? 0.0 : pressure;
+  }
   std::size_t nodes() const { return mesh.nodes(); }
   std::size_t count() const { return mesh.elements(); }
 };

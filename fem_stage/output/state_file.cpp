@@ -94,7 +94,7 @@ Snapshot make_snapshot(const Model& model, const State& state, double rigid_velo
   out.effective_stress_ratio.resize(count);
   for (std::size_t e = 0; e < count; ++e) {
     const double pressure = element_mean(model, state.pressure, e);
-    for (std::size_t i = 0; i < 3; ++i) out.total_stress[4 * e + i] -= pressure;
+    for (std::size_t i = 0; i < 3; ++i) out.total_stress[4 * e + i] -= model.pressure_in_stress(e, pressure);
     out.initial_pore_pressure[e] = element_mean(model, state.initial_pressure, e);
     const double vertical = -state.initial_stress[4 * e + 1];
     out.initial_vertical_effective_stress[e] = vertical;

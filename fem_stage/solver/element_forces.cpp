@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "fem_stage/boundary/soft_fluid.hpp"
 #include "fem_stage/solver/averaged_mass.hpp"
 
 namespace tailrun::fem {
@@ -25,6 +26,7 @@ ElementForces::ElementForces(const Model& model, double damping, bool large_disp
   const std::size_t count = model.count();
   bulk_.resize(count);
   shear_.resize(count);
+  mobility_.assign(count, 1.0);
   hourglass_committed_.assign(2 * count, 0.0);
   hourglass_trial_.assign(2 * count, 0.0);
   strain_.assign(3 * count, 0.0);
@@ -82,7 +84,6 @@ UpdateReport ElementForces::evaluate(MaterialPoints& points, std::span<const dou
   material_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
   const double fluid_density = model_.options->fluid_density, gravity = model_.options->gravity;
-  const double compressibility = 1.0 / model_.options->fluid_bulk_modulus;
 #pragma omp parallel for schedule(static)
   for (std::size_t e = 0; e < count; ++e) {
     double sxx = stress_[4 * e], syy = stress_[4 * e + 1], sxy = stress_[4 * e + 3];
@@ -122,10 +123,11 @@ UpdateReport ElementForces::evaluate(MaterialPoints& points, std::span<const dou
       hx += damping_ * g * (el.hourglass[3 * e] * qx + el.hourglass[3 * e + 1] * qy);
       hy += damping_ * g * (el.hourglass[3 * e + 1] * qx + el.hourglass[3 * e + 2] * qy);
     }
+    mean_pressure = model_.pressure_in_stress(e, mean_pressure);
     sxx -= mean_pressure;
     syy -= mean_pressure;
-    const double storage = model_.porosity[e] * compressibility, alpha = model_.stabilisation[e];
-    const double kx = model_.permeability_x[e], ky = model_.permeability_y[e];
+    const double storage = model_.storage[e], alpha = model_.stabilisation[e];
+    const double kx = mobility_[e] * model_.permeability_x[e], ky = mobility_[e] * model_.permeability_y[e];
     const double volume_rate = 0.25 * volume * (vxx + vyy);
     const double *mass = &el.mass_matrix[10 * e], *gxx = &el.gradient_xx[10 * e], *gyy = &el.gradient_yy[10 * e];
     for (int a = 0; a < 4; ++a) {
@@ -160,6 +162,7 @@ void ElementForces::commit(MaterialPoints& points, State& state, std::span<const
   hourglass_committed_ = hourglass_trial_;
   state.hourglass_force = hourglass_trial_;
   state.stress = global_stress_;
+  soft_fluid_mobility(model_, state.pressure, mobility_);
   if (!large_) return;
   const auto* quads = model_.mesh.quads.data();
 #pragma omp parallel for schedule(static)
@@ -183,6 +186,7 @@ void ElementForces::commit(MaterialPoints& points, State& state, std::span<const
 void ElementForces::reset(const MaterialPoints& points, const State& state) {
   points.elastic_moduli(bulk_, shear_);
   hourglass_committed_ = state.hourglass_force;
+  soft_fluid_mobility(model_, state.pressure, mobility_);
   if (!large_) return;
   if (!state.rotation.empty()) rotation_ = state.rotation;
   if (!state.turned_hourglass_force.empty()) hourglass_committed_ = state.turned_hourglass_force;
@@ -195,7 +199,7 @@ void ElementForces::matrix(std::size_t e, double mass_factor, double stiffness_f
   const SspQuadUp& el = elements();
   double stiffness[64];
   sspquadup_stiffness(el, e, bulk_[e], shear_[e], hourglass_modulus(e), stiffness);
-  const double storage = model_.porosity[e] / model_.options->fluid_bulk_modulus, alpha = model_.stabilisation[e];
+  const double storage = model_.storage[e], alpha = model_.stabilisation[e];
   const double coupling = 0.25 * el.volume[e] * scale;
   for (int a = 0; a < 4; ++a) {
     const std::size_t ia = 4 * e + static_cast<std::size_t>(a);
@@ -215,7 +219,7 @@ void ElementForces::matrix(std::size_t e, double mass_factor, double stiffness_f
                    gyy = el.gradient_yy[10 * e + static_cast<std::size_t>(ab)];
       const double d =
           storage_factor * (storage * el.mass_matrix[10 * e + static_cast<std::size_t>(ab)] + alpha * (gxx + gyy)) +
-          flow_factor * (model_.permeability_x[e] * gxx + model_.permeability_y[e] * gyy);
+          mobility_[e] * flow_factor * (model_.permeability_x[e] * gxx + model_.permeability_y[e] * gyy);
       block[26] = -scale * scale * d;
     }
     const double inertia = mass_factor * model_.density[e] * model_.elements.nodal_volume[ia];

@@ -56,6 +56,7 @@ class ElementForces {
   SspQuadUp moved_;
   std::vector<double> bulk_, shear_;  // of the last commit
   std::vector<double> hourglass_committed_, hourglass_trial_;
+  std::vector<double> mobility_;  // 1, (M): share of the permeability, below 1 in a soft fluid under suction
   std::vector<double> rotation_;  // rad, (M), only with large displacement
   std::vector<double> strain_, material_strain_, stress_, global_stress_, element_forces_;
   double material_seconds_ = 0.0;

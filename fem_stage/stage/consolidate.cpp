@@ -53,7 +53,7 @@ ConsolidationReport run_consolidation(const Model& model, MaterialPoints& points
                  report.start_velocity);
 
   points.set_post_shaking(options.post_shaking);
-  const Freedoms freedoms = geostatic_freedoms(model);
+  const Freedoms freedoms = consolidation_freedoms(model);
   ElementForces forces(model, 0.0, model.options->shake.large_displacement);
   forces.reset(points, state);
   NewmarkOptions newmark_options;

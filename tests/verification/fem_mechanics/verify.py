@@ -322,9 +322,77 @@ def restart(r):
     return "restart", "displacement and velocity of a run cut in two, over their largest", error, 1e-6
 
 
+def soft_modulus(scene):
+    s = scene["above_phreatic_line"]["saturation"]
+    return 1 / (s / 2.2e9 + (1 - s) / 101325)
+
+
+def soft_fluid_squeeze(r):
+    """Undrained 1-D: each half takes its share K/n / (K/n + M) of the load. Nodes 2.5 m and more from the line, where
+    the pressure field turns from one share to the other."""
+    scene, load, water = r.scene("soft_fluid/fem.json"), 10e3, 2.2e9
+    start, end = snapshots(r.run("soft_fluid/fem.json"))
+    rise = end.node["pore_pressure"] - start.node["pore_pressure"]
+    oedometric = 1e7 * 0.75 / (1.25 * 0.5)
+    error = 0.0
+    for half, modulus in ((end.x[:, 1] >= 7.5, soft_modulus(scene)), (end.x[:, 1] <= 2.5, water)):
+        wanted = load * modulus / 0.4 / (modulus / 0.4 + oedometric)
+        error = max(error, np.abs(rise[half] / wanted - 1).max())
+    return "soft_fluid", "rise of pore pressure above and below the line, squeezed undrained", error, 1e-4
+
+
+def risen(r):
+    """States at rest, on the way and at the end of the consolidation that lets the water level rise."""
+    folder, case = r.empty_folder("rise"), str(r.root / "cases/verification/soft_fluid/rise.json")
+    for command in (["mesh"], ["geostatic"], ["consolidate", "--from", str(folder / "geostatic.h5")]):
+        subprocess.run([r.program, command[0], case, *command[1:], "-o", str(folder), "--quiet", "--threads", "1"],
+                       check=True)
+    return [State(folder / "geostatic.h5")] + snapshots(folder) + [State(folder / "consolidated.h5")]
+
+
+def soft_fluid_rise(r):
+    """The water level in the end, found from the volume of water alone: what the skeleton gave is what the pores took."""
+    scene, load, water, oedometric = r.scene("soft_fluid/rise.json"), 50e3, 2.2e9, 1e7 * 0.75 / (1.25 * 0.5)
+    end = risen(r)[-1]
+    y = (np.arange(100000) + 0.5) * 1e-4
+    before = np.maximum(9810 * (5 - y), 0.0)
+
+    def surplus(level):
+        after = 9810 * (level - y)
+        strain = (-load + np.maximum(after, 0) - before) / oedometric
+        return np.mean(strain + 0.4 / np.where(y > 5, soft_modulus(scene), water) * (after - before))
+
+    low, high = 5.0, 10.0
+    while high - low > 1e-9:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if surplus(middle) < 0 else (low, middle)
+    found = end.node["pore_pressure"][end.x[:, 1] < 1e-9].mean() / 9810
+    quantity = f"rise of the water level into the dry zone: {found - 5:.4f} m for {low - 5:.4f} m"
+    return "soft_fluid", quantity, abs((found - 5) / (low - 5) - 1), 0.01
+
+
+def soft_fluid_conservation(r):
+    """All along: water in the pores plus the room that the skeleton gave, over what has crossed the line."""
+    scene = r.scene("soft_fluid/rise.json")
+    start, *later = risen(r)
+    error = 0.0
+    for s in later:
+        x, u = s.x[s.quads], s.node["displacement"][:, :2][s.quads]
+        area = lambda q: 0.5 * np.sum(q[:, :, 0] * np.roll(q[:, :, 1], -1, 1) - np.roll(q[:, :, 0], -1, 1) * q[:, :, 1], 1)
+        volume = area(x)
+        small = 1e-3  # the small-strain volume change from a scaled displacement
+        swelling = (area(x + small * u) - area(x - small * u)) / (2 * small)
+        above = s.centre[:, 1] > 5
+        change = (s.node["pore_pressure"] - start.node["pore_pressure"])[s.quads].mean(axis=1)
+        gain = swelling + volume * 0.4 / np.where(above, soft_modulus(scene), 2.2e9) * change
+        error = max(error, abs(gain.sum()) / gain[above].sum())
+    return "soft_fluid", "water lost or made, over what has risen across the phreatic line", error, 1e-6
+
+
 CHECKS = [patch_test, cantilever_timoshenko, cantilever_opensees, terzaghi_series, terzaghi_opensees, terzaghi_order_1,
           terzaghi_order_2, sealed_element, sealed_column, hydrostatic, k0, wave_absorption, wave_absorption_p,
-          site_transfer, site_transfer_averaged, pond, free_field, consolidation, restart]
+          site_transfer, site_transfer_averaged, pond, free_field, consolidation, restart, soft_fluid_squeeze,
+          soft_fluid_rise, soft_fluid_conservation]
 
 
 def main():
