@@ -243,6 +243,8 @@ def document(studies, dam_rows, path):
         exponent = cost_exponent(dam_rows)
         if exponent is not None:
             lines += ["", f"Seconds grow as n^{exponent:.2f} from the coarse to the fine mesh."]
+    # Studies whose losers are no longer in the program: figures of the commits that the notes name.
+    lines += ["", (pathlib.Path(__file__).parent / "fem_solver_notes.md").read_text().rstrip()]
     path.write_text("\n".join(lines) + "\n")
 
 

@@ -110,8 +110,6 @@ ShakeOptions read_shake(const CaseNode& node) {
   out.max_halvings = static_cast<int>(solver.integer_or("max_halvings", 0, 20, out.max_halvings));
   out.refactor_above = static_cast<int>(solver.integer_or("refactor_above", 0, 1000, out.refactor_above));
   out.acceleration_depth = static_cast<int>(solver.integer_or("acceleration_depth", 0, 50, out.acceleration_depth));
-  out.central_differences =
-      node.choice_or("integrator", {"newmark", "central_differences"}, "newmark") == "central_differences";
   out.large_displacement = node.boolean_or("large_displacement", false);
   return out;
 }

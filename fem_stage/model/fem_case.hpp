@@ -65,7 +65,6 @@ struct ShakeOptions {
   int refactor_above = 6;      // iterations of a step after which the matrix is made anew
   int acceleration_depth = 6;  // corrections that Anderson acceleration combines; 0 = off
   bool large_displacement = false;
-  bool central_differences = false;  // explicit, in steps of the critical length
 };
 
 // After the shaking: quasi-static steps of growing length.

@@ -12,7 +12,6 @@
 #include "fem_stage/boundary/free_field.hpp"
 #include "fem_stage/boundary/stage_freedoms.hpp"
 #include "fem_stage/output/state_file.hpp"
-#include "fem_stage/solver/central_differences.hpp"
 
 namespace tailrun::fem {
 namespace {
@@ -152,7 +151,6 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
           0.5 * (motion.velocity_at(before) + motion.velocity_at(state.time)) * (state.time - before);
     free_field.observe(state);
   };
-  CentralDifferences leap(model, freedoms, dashpots, load);
   Stepper stepper(model, points, state, forces, newmark, report.ledger, accepted);
   std::vector<double> first_load(2 * model.nodes(), 0.0);
   load(state.time, first_load);
@@ -202,13 +200,7 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
     const double before = state.time,
                  target = std::min(options.duration, options.time_step * static_cast<double>(step));
     if (target <= before + slack) continue;  // a restart
-    if (options.central_differences) {
-      report.failure = leap.advance(state, points, forces, target - before).reason;
-      newmark.counts() = leap.counts();
-      free_field.observe(state);
-    } else {
-      report.failure = stepper.advance(target - before, options.max_halvings);
-    }
+    report.failure = stepper.advance(target - before, options.max_halvings);
     if (!report.failure.empty()) break;
     state.time = target;  // no drift from adding up steps
     const auto ratio = excess_pore_pressure_ratio(model, state);
