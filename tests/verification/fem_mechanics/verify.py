@@ -50,8 +50,8 @@ class Runner:
             old.unlink()
         return folder
 
-    def run(self, case, change=None, label="run"):
-        """Runs a scene, changed by `change` where given. Returns its folder."""
+    def run(self, case, change=None, label="run", size=None):
+        """Runs a scene, changed by `change` and with the `size` of its mesh where given. Returns its folder."""
         folder = self.empty_folder(label)
         path = self.root / "cases/verification" / case
         if change is not None:
@@ -59,7 +59,8 @@ class Runner:
             change(scene)
             path = folder / "fem.json"
             path.write_text(json.dumps(scene, indent=1))
-        subprocess.run([self.program, "run", str(path), "-o", str(folder), "--quiet", "--threads", "1"], check=True)
+        command = [self.program, "run", str(path), "-o", str(folder), "--quiet", "--threads", "1"]
+        subprocess.run(command + (["--size", size] if size else []), check=True)
         return folder
 
 
