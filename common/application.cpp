@@ -7,7 +7,7 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iostream>
+#include <new>
 
 #include "common/error.hpp"
 #include "common/provenance.hpp"
@@ -53,8 +53,14 @@ int run_application(CLI::App& app, int argc, char** argv) {
   } catch (const InputError& error) {
     spdlog::error("{}: {}", app.get_name(), error.what());
     return exit_bad_input;
+  } catch (const InterruptedError& error) {
+    spdlog::error("{}: {}", app.get_name(), error.what());
+    return exit_computation_failed;
   } catch (const ComputationError& error) {
     spdlog::error("{}: the computation failed: {}", app.get_name(), error.what());
+    return exit_computation_failed;
+  } catch (const std::bad_alloc&) {
+    spdlog::error("{}: the computation failed: not enough memory", app.get_name());
     return exit_computation_failed;
   } catch (const std::exception& error) {
     spdlog::error("{}: unexpected error: {}", app.get_name(), error.what());

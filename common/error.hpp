@@ -22,6 +22,11 @@ struct ComputationError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// Stopped from outside, for instance by a signal; everything needed to go on is on disk.
+struct InterruptedError : ComputationError {
+  using ComputationError::ComputationError;
+};
+
 // The candidate with the smallest Damerau-Levenshtein distance to `word`; empty when none is near enough to be meant.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 

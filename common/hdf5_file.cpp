@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/claimed_sizes.hpp"
 #include "common/error.hpp"
 
 namespace tailrun {
@@ -204,6 +205,12 @@ Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) : path_(path) {
     throw InputError(
         fmt::format("{}: cannot be opened as HDF5; it is truncated, damaged or still being written. Make it again.",
                     path.string()));
+  try {
+    check_claimed_sizes(file_, path_);
+  } catch (...) {
+    H5Fclose(file_);  // the destructor of what was never made does not run
+    throw;
+  }
 }
 
 Hdf5Reader::~Hdf5Reader() {
@@ -268,7 +275,12 @@ std::vector<T> read_array(const Hdf5Reader& reader, hid_t file, const std::strin
   if ((rows && rows != found_rows) || (columns && columns != found_columns))
     reader.fail(name, fmt::format("has shape {} x {}, but {} x {} is required", found_rows, found_columns,
                                   rows ? std::to_string(rows) : "any", columns ? std::to_string(columns) : "any"));
-  std::vector<T> values(found_rows * found_columns);
+  std::vector<T> values;
+  try {
+    values.resize(found_rows * found_columns);
+  } catch (const std::exception&) {  // bad_alloc or length_error
+    reader.fail(name, fmt::format("has shape {} x {}, too large for this machine's memory", found_rows, found_columns));
+  }
   Handle dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!values.empty() && H5Dread(dataset, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     reader.fail(name, "cannot be read; the file is truncated or damaged, or the data are not numbers");

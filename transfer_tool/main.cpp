@@ -21,7 +21,6 @@
 #include "transfer_tool/audit/audit.hpp"
 #include "transfer_tool/audit/particle_set.hpp"
 #include "transfer_tool/import/import_tables.hpp"
-#include "transfer_tool/inspect/damaged_input.hpp"
 #include "transfer_tool/inspect/file_report.hpp"
 #include "transfer_tool/options/transfer_case.hpp"
 
@@ -35,10 +34,10 @@ struct RunOptions {
 };
 
 Snapshot read_state(const RunOptions& options, Provenance& provenance) {
-  Snapshot snapshot = read_undamaged(options.snapshot_path, read_snapshot);
+  Snapshot snapshot = read_snapshot(options.snapshot_path);
   provenance.add_file(options.snapshot_path);
   if (!options.geostatic_path.empty()) {
-    take_initial_state(snapshot, read_undamaged(options.geostatic_path, read_snapshot));
+    take_initial_state(snapshot, read_snapshot(options.geostatic_path));
     provenance.add_file(options.geostatic_path);
   }
   return snapshot;
@@ -132,7 +131,7 @@ int main(int argc, char** argv) {
   info_command->add_option("file", info_path, "Snapshot, particles, frame, geostatic or checkpoint file")->required();
   info_command->add_flag("--json", as_json, "For machines");
   info_command->callback([&] {
-    const FileReport report = read_undamaged(info_path, read_file_report);
+    const FileReport report = read_file_report(info_path);
     fmt::print("{}", as_json ? report_json(report).dump(1) + "\n" : report_text(report));
   });
 

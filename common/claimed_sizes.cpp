@@ -1,10 +1,12 @@
-#include "transfer_tool/inspect/damaged_input.hpp"
+#include "common/claimed_sizes.hpp"
 
-#include <hdf5.h>
+#include <fmt/format.h>
 
 #include <string>
 
-namespace tailrun::transfer {
+#include "common/error.hpp"
+
+namespace tailrun {
 namespace {
 
 struct Visit {
@@ -43,15 +45,11 @@ herr_t visit_object(hid_t file, const char* name, const H5O_info_t* info, void* 
 
 }  // namespace
 
-void check_claimed_sizes(const std::filesystem::path& path) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file < 0) return;  // Hdf5Reader tells why
+void check_claimed_sizes(hid_t file, const std::filesystem::path& path) {
   std::error_code ignored;
   Visit visit;
   visit.allowed = 1100.0 * static_cast<double>(std::filesystem::file_size(path, ignored)) + 1e6;
   const herr_t walked = H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit_object, &visit, H5O_INFO_BASIC);
-  H5Fclose(file);
   if (walked < 0)
     throw InputError(fmt::format(
         "{}: its groups cannot be walked through; the file is truncated or damaged. Make it again", path.string()));
@@ -60,4 +58,4 @@ void check_claimed_sizes(const std::filesystem::path& path) {
                                  path.string(), visit.culprit));
 }
 
-}  // namespace tailrun::transfer
+}  // namespace tailrun
