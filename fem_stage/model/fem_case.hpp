@@ -59,7 +59,7 @@ struct ShakeOptions {
   double time_step = 0.005;        // s
   double gamma = 0.6, beta = 0.3025, theta = 0.6;
   double damping_ratio = 0.0, damping_frequency = 0.0;  // stiffness proportional: a1 = 2 zeta / (2 pi f)
-  double tolerance = 1e-5;                              // residual force, of the weight
+  double tolerance = 1e-4;                              // residual force per thickness, of the weight
   int max_iterations = 30;
   int max_halvings = 6;
   int refactor_above = 6;      // iterations of a step after which the matrix is made anew
@@ -73,7 +73,7 @@ struct ConsolidationOptions {
   double first_step = 0.01, largest_step = 3600.0, growth = 1.5;  // s, s, 1
   double ratio_limit = 0.05;    // r_u: done when no element has more; 0 = run to the end
   double rest_velocity = 0.01;  // m/s: a state that moves faster gets a warning
-  double tolerance = 1e-5;      // residual force, of the weight
+  double tolerance = 1e-4;      // residual force per thickness, of the weight
   int max_iterations = 50;
   int max_halvings = 10;          // of the first step
   bool post_shaking = true;       // the PM4 models' reconsolidation moduli

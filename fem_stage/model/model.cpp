@@ -65,7 +65,7 @@ void gather_loads(const FemCase& options, Model& model) {
     }
 }
 
-// 2-norm of the nodal forces of all loads at their largest.
+// 2-norm of the nodal forces over thickness (N/m) of all loads at their largest.
 double load_scale(const Model& model) {
   std::vector<double> force(2 * model.nodes(), 0.0);
   for (const auto& load : model.loads)
@@ -74,7 +74,10 @@ double load_scale(const Model& model) {
       force[2 * static_cast<std::size_t>(f.node) + 1] += load.history.largest() * f.y;
     }
   double squares = 0.0;
-  for (const double f : force) squares += f * f;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    const double f = force[i] / model.nodal_thickness[i / 2];
+    squares += f * f;
+  }
   return std::sqrt(squares);
 }
 
@@ -174,8 +177,15 @@ Model build_model(const FemCase& options, const std::filesystem::path& mesh_file
   model.nodal_mass.assign(model.nodes(), 0.0);
   for (std::size_t i = 0; i < mesh.quads.size(); ++i)
     model.nodal_mass[static_cast<std::size_t>(mesh.quads[i])] += model.density[i / 4] * model.elements.nodal_volume[i];
+  std::vector<double> slice(model.nodes(), 0.0);  // kg/m
+  for (std::size_t i = 0; i < mesh.quads.size(); ++i)
+    slice[static_cast<std::size_t>(mesh.quads[i])] +=
+        model.density[i / 4] * model.elements.nodal_volume[i] / model.thickness[i / 4];
   double squares = 0.0;
-  for (const double m : model.nodal_mass) squares += m * m;
+  for (std::size_t n = 0; n < model.nodes(); ++n) {
+    model.nodal_thickness.push_back(model.nodal_mass[n] / slice[n]);
+    squares += slice[n] * slice[n];
+  }
   model.weight = (options.gravity > 0.0 ? options.gravity : 9.81) * std::sqrt(squares);
 
   gather_loads(options, model);
@@ -218,6 +228,19 @@ MaterialPoints make_material_points(const Model& model) {
     material_of_element.push_back(
         model.options->regions.at(model.mesh.region_names[static_cast<std::size_t>(model.mesh.region[e])]).material);
   return MaterialPoints(model.options->materials, material_of_element);
+}
+
+std::vector<double> equation_thickness(const Model& model, const Freedoms::Equations& equations) {
+  const auto count = static_cast<std::size_t>(equations.count);
+  std::vector<double> mass(count, 0.0), slice(count, 0.0), thickness(count);
+  for (std::size_t i = 0; i < equations.number.size(); ++i) {
+    if (equations.number[i] < 0) continue;
+    const auto equation = static_cast<std::size_t>(equations.number[i]);
+    mass[equation] += model.nodal_mass[i / 3];
+    slice[equation] += model.nodal_mass[i / 3] / model.nodal_thickness[i / 3];
+  }
+  for (std::size_t k = 0; k < count; ++k) thickness[k] = mass[k] / slice[k];
+  return thickness;
 }
 
 std::vector<int> element_equations(const Mesh& mesh, const Freedoms::Equations& equations) {

@@ -35,7 +35,10 @@ struct Model {
   std::vector<NodalLoad> loads;       // beside gravity: lines, points, ponded water
   std::vector<double> base_area;      // m2, per node of base_nodes: tributary area
   std::vector<std::int64_t> base_nodes;
-  double weight = 0.0;  // N, 2-norm of the nodal weights and of the loads: scale of forces
+  std::vector<double> nodal_thickness;  // m, (N): of the elements around, weighted by their mass
+  // N/m, scale of forces per thickness: 2-norm of the nodal weights, or of the loads if that is larger, each over its
+  // node's thickness. A free-field column counts as a slice does, however thick it is.
+  double weight = 0.0;
 
   // (node -> elements) in compressed rows, so that nodal sums are gathered in a fixed order by any thread
   std::vector<int> adjacency_start, adjacency;  // entries are 4 * element + local node
@@ -75,6 +78,9 @@ Model build_model(const FemCase& options, const std::filesystem::path& mesh_file
 std::vector<std::int64_t> nodes_at(const Mesh& mesh, const Place& place);
 
 MaterialPoints make_material_points(const Model& model);
+
+// m, (equations): the nodal thickness, weighted by mass where nodes share an equation. A residual counts over it.
+std::vector<double> equation_thickness(const Model& model, const Freedoms::Equations& equations);
 
 // Element equation numbers (M, 12): u_x, u_y, p node by node.
 std::vector<int> element_equations(const Mesh& mesh, const Freedoms::Equations& equations);

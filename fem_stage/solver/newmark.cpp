@@ -33,7 +33,8 @@ Newmark::Newmark(const Model& model, const Freedoms& freedoms, NewmarkOptions op
       dashpots_(std::move(dashpots)),
       load_(std::move(load)),
       equations_(freedoms.number(true, true)),
-      system_(equations_.count, element_equations(model.mesh, equations_), 12) {
+      system_(equations_.count, element_equations(model.mesh, equations_), 12),
+      thickness_(equation_thickness(model, equations_)) {
   const std::size_t nodes = model.nodes();
   for (auto* array : {&increment_, &velocity_, &acceleration_, &load_force_}) array->assign(2 * nodes, 0.0);
   pressure_.assign(nodes, 0.0);
@@ -99,10 +100,11 @@ void Newmark::factorise(const ElementForces& forces, double dt) {
 }
 
 std::string Newmark::worst_freedom(std::span<const double> residual) const {
-  const auto it =
-      std::max_element(residual.begin(), residual.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  return fmt::format("largest residual {:.3g} N at {}", *it,
-                     equations_.describe(static_cast<int>(it - residual.begin()), model_.mesh));
+  std::size_t worst = 0;
+  for (std::size_t i = 0; i < residual.size(); ++i)
+    if (std::abs(residual[i] * thickness_[worst]) > std::abs(residual[worst] * thickness_[i])) worst = i;
+  return fmt::format("largest residual {:.3g} N per metre of thickness at {}", residual[worst] / thickness_[worst],
+                     equations_.describe(static_cast<int>(worst), model_.mesh));
 }
 
 StepResult Newmark::step(State& state, MaterialPoints& points, ElementForces& forces, double dt) {
@@ -183,7 +185,10 @@ StepResult Newmark::step(State& state, MaterialPoints& points, ElementForces& fo
         right_[static_cast<std::size_t>(equation)] -= dashpot.coefficient * velocity_[2 * n + dashpot.freedom];
     }
     double squares = 0.0;
-    for (const double r : right_) squares += r * r;
+    for (std::size_t i = 0; i < right_.size(); ++i) {
+      const double r = right_[i] / thickness_[i];
+      squares += r * r;
+    }
     result.residual = std::sqrt(squares) / model_.weight;
     result.iterations = iteration;
     if (!std::isfinite(result.residual)) {

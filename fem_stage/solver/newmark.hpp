@@ -17,7 +17,7 @@ namespace tailrun::fem {
 
 struct NewmarkOptions {
   double gamma = 0.6, beta = 0.3025, theta = 0.6;
-  double tolerance = 1e-5;  // residual force (2-norm over the free equations), as a fraction of the model's weight
+  double tolerance = 1e-4;  // residual force per thickness (2-norm over the free equations), of the model's weight
   int max_iterations = 30;
   int refactor_above = 6;
   int acceleration_depth = 6;
@@ -74,6 +74,7 @@ class Newmark {
   LoadFunction load_;
   Freedoms::Equations equations_;
   SymmetricSystem system_;
+  std::vector<double> thickness_;  // m, per equation: what residuals count over
   std::unique_ptr<Anderson> anderson_;
   double matrix_step_ = 0.0;  // dt of the factorised matrix, 0 = none
   double scale_ = 0.0;        // Pa/m: unit of the pressure unknown

@@ -101,6 +101,8 @@ Balance balance_at_rest(const Model& model, const Freedoms::Equations& equations
       const int equation = equations.number[3 * n + i];
       if (equation >= 0) sums[static_cast<std::size_t>(equation)] += out.residual[2 * n + i];
     }
+  const auto thickness = equation_thickness(model, equations);
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= thickness[i];
   double squares = 0.0, worst = -1.0;
   for (std::size_t n = 0; n < nodes; ++n)
     for (std::size_t i = 0; i < 2; ++i) {
