@@ -52,11 +52,18 @@ void MirrorWalls<Dim>::update(const BlockGrid<Dim>& grid, const WallNodes<Dim>& 
 template <int Dim>
 void MirrorWalls<Dim>::fold(Vec4* sums) const {
   for (const Pair& p : pairs_) {
-    if (p.behind < 0 || static_cast<std::size_t>(p.behind) == p.inside) continue;
+    if (p.behind < 0) continue;
+    if (static_cast<std::size_t>(p.behind) == p.inside) {
+      // On the wall what changes sign cancels its image; the rest, mass with it, is half of the symmetric whole.
+      for (int d = 0; d < Dim; ++d)
+        if (p.fixed || d == p.direction) sums[p.inside][1 + d] = 0.0;
+      continue;
+    }
     Vec4 image = sums[p.behind];
     for (int d = 0; d < Dim; ++d)
       if (p.fixed || d == p.direction) image[1 + d] = -image[1 + d];
     sums[p.inside] += image;
+    sums[p.behind] = Vec4{};
   }
 }
 

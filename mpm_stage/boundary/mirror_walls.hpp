@@ -20,7 +20,8 @@ class MirrorWalls {
   void update(const BlockGrid<Dim>& grid, const WallNodes<Dim>& walls, int reach);
 
   bool any() const { return !pairs_.empty(); }
-  // Adds the mirror image's mass and momentum (lanes 0 and 1 .. Dim) to the nodes inside.
+  // Adds the mirror image's mass and momentum (lanes 0 and 1 .. Dim) to the nodes inside and empties those behind the
+  // wall, so that nothing is computed, damped or counted twice there.
   void fold(Vec4* sums) const;
   // Sets the velocities on the walls and, mirrored, behind them. Vec4 as node_velocity makes it.
   void reflect(Vec4* velocity) const;

@@ -1,9 +1,12 @@
-// The sides of the grid: planes of nodes at which velocities are held.
+// Where nodes are held: the sides of the grid, planes of nodes, and bodies that move as prescribed.
 #pragma once
 
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
+
+#include "mpm_stage/boundary/moving_bodies.hpp"
 
 namespace tailrun::mpm {
 
@@ -22,6 +25,7 @@ struct Walls {
   std::array<double, Dim> low{}, high{};  // m, on nodes
   std::array<std::array<Side, 2>, Dim> side{};
   LeavingParticles leaving = LeavingParticles::error;
+  std::vector<MovingBody<Dim>> bodies;
 
   bool any_wall() const {
     for (const auto& pair : side)

@@ -56,6 +56,7 @@ void for_each_number(SolverState<Dim>& s, RunState& r, Action action) {
   action("seconds_stress_and_scatter", s.seconds.stress_and_scatter);
   action("seconds_sort", s.seconds.sort);
   for (int d = 0; d < Dim; ++d) action(fmt::format("boundary_impulse_{}", d).c_str(), s.impulse[d]);
+  action("solver_time", s.time);
   integer("steps", r.record.steps);
   action("particle_steps", r.record.particle_steps);
   action("time", r.record.time);
@@ -86,6 +87,12 @@ void for_each_value(FrontRow& r, Action action) {
                     &r.rms_speed, &r.maximum_speed})
     action(*x);
   for (double& x : r.points) action(x);
+}
+
+template <class Action>
+void for_each_value(BodyRow& r, Action action) {
+  action(r.time);
+  for (double& x : r.values) action(x);
 }
 
 template <class Row>
@@ -160,6 +167,15 @@ void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, do
 
   write_rows(file, "/series/ledger", run.ledger);
   write_rows(file, "/series/front", run.front);
+  if (!state.bodies.empty()) {
+    std::vector<double> bodies;
+    for (const BodyState<Dim>& b : state.bodies) {
+      bodies.insert(bodies.end(), b.displacement.begin(), b.displacement.end());
+      bodies.insert(bodies.end(), b.impulse.begin(), b.impulse.end());
+    }
+    file.write("/series/body_state", bodies, 2 * Dim, "m, N s", "displacement and impulse of each moving body");
+    write_rows(file, "/series/bodies", run.bodies);
+  }
   file.write_texts("/series/frame_names", run.frame_names, "frames written so far");
   file.write("/series/frame_times", run.frame_times, 0, "s", "their times");
   file.commit();
@@ -220,6 +236,18 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
   if (shape.size() != 2 || shape[1] < plain) file.fail("/series/front", "has too few columns");
   row.points.resize(shape[1] - plain);
   run.front = read_rows(file, "/series/front", row);
+  state.bodies = solver.bodies();
+  if (!state.bodies.empty()) {
+    const auto bodies = file.doubles("/series/body_state", state.bodies.size(), 2 * Dim);
+    for (std::size_t b = 0; b < state.bodies.size(); ++b)
+      for (std::size_t d = 0; d < Dim; ++d) {
+        state.bodies[b].displacement[d] = bodies[2 * Dim * b + d];
+        state.bodies[b].impulse[d] = bodies[2 * Dim * b + Dim + d];
+      }
+    BodyRow body_row;
+    body_row.values.resize(2 * Dim * state.bodies.size());
+    run.bodies = read_rows(file, "/series/bodies", body_row);
+  }
   run.frame_names = file.texts("/series/frame_names");
   run.frame_times = file.doubles("/series/frame_times", run.frame_names.size());
   solver.resume(std::move(P), state);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/provenance.hpp"
+#include "mpm_stage/output/body_series.hpp"
 #include "mpm_stage/output/front.hpp"
 #include "mpm_stage/output/ledger.hpp"
 #include "mpm_stage/output/summary.hpp"
@@ -14,7 +15,7 @@
 
 namespace tailrun::mpm {
 
-constexpr int checkpoint_format_version = 1;
+constexpr int checkpoint_format_version = 2;
 
 // What the run loop has to remember besides the solver.
 struct RunState {
@@ -25,6 +26,7 @@ struct RunState {
   std::vector<LedgerRow> ledger;
   double largest_kinetic = 0.0;  // J, of the ledger's rows
   std::vector<FrontRow> front;
+  std::vector<BodyRow> bodies;
 };
 
 // Throws ComputationError when the file cannot be written.

@@ -57,6 +57,8 @@ Json features(const Scene& scene) {
   say(cutoff, "tension cut-off");
   say(!scene.terrain.empty(), "terrain contact");
   say(scene.walls.any_wall(), "walls of the grid");
+  say(o.surface_share > 0.0, "velocities continued beyond the surface");
+  say(!scene.walls.bodies.empty(), "moving bodies");
   say(scene.base.shaken(), "base shaking");
   say(o.local_damping > 0.0, "local damping");
   return {{"chosen", chosen}, {"skipped", skipped}};

@@ -9,6 +9,7 @@
 #include "common/error.hpp"
 #include "common/progress.hpp"
 #include "mpm_stage/checkpoint/checkpoint.hpp"
+#include "mpm_stage/output/body_series.hpp"
 #include "mpm_stage/output/frames.hpp"
 #include "mpm_stage/output/front.hpp"
 #include "mpm_stage/output/ledger.hpp"
@@ -46,7 +47,18 @@ Walls<Dim> in_dimension(const Walls<3>& w) {
       b.side[d][s].friction = w.side[d][s].friction;
     }
   }
+  for (const MovingBody<3>& body : w.bodies) {
+    MovingBody<Dim> m{body.name, in_dimension<Dim>(body.low), in_dimension<Dim>(body.high), body.time, {}};
+    for (const auto& v : body.velocity) m.velocity.push_back(in_dimension<Dim>(v));
+    b.bodies.push_back(std::move(m));
+  }
   return b;
+}
+
+std::vector<std::string> names_of(const std::vector<MovingBody<3>>& bodies) {
+  std::vector<std::string> names;
+  for (const auto& b : bodies) names.push_back(b.name);
+  return names;
 }
 
 // One run with its solver and records. Everything that changes from step to step is in the solver, in `record_`, in the
@@ -67,6 +79,7 @@ class Runout {
                                  in_dimension<Dim>(scene.walls))),
         ledger_(gravity_),
         front_(scene),
+        bodies_(names_of(scene.walls.bodies)),
         frames_(folder / "frames", provenance) {}
 
   void run() {
@@ -93,6 +106,7 @@ class Runout {
     if (ledger_.rows().back().time < record_.time) {
       ledger_.sample(record_.time, *solver_, scene_.energy_growth_limit);
       front_.sample(record_.time, solver_->particles());
+      bodies_.sample(record_.time, solver_->bodies());
     }
     finish();
     std::filesystem::remove(checkpoint_);
@@ -118,6 +132,7 @@ class Runout {
     record_.first_unbalanced = solver_->unbalanced_force_ratio(gravity_);
     ledger_.sample(0.0, *solver_, scene_.energy_growth_limit);
     front_.sample(0.0, solver_->particles());
+    bodies_.sample(0.0, solver_->bodies());
     if (scene_.output.frame_interval > 0.0) frames_.write(particle_set<Dim>(scene_, solver_->particles(), 0.0));
     record_.setup_seconds = seconds_since(start_);
     spdlog::info(
@@ -138,6 +153,7 @@ class Runout {
     frame_ = Schedule(scene_.output.frame_interval, state.frame_count);
     ledger_.restore(std::move(state.ledger), state.largest_kinetic);
     front_.restore(std::move(state.front));
+    bodies_.restore(std::move(state.bodies));
     frames_.restore(std::move(state.frame_names), std::move(state.frame_times));
     wall_seconds_before_ = record_.wall_seconds;
     spdlog::info("going on from {}: t = {:.6g} s, step {}", checkpoint_.string(), record_.time, record_.steps);
@@ -156,6 +172,7 @@ class Runout {
     state.ledger = ledger_.rows();
     state.largest_kinetic = ledger_.largest_kinetic();
     state.front = front_.rows();
+    state.bodies = bodies_.rows();
     write_checkpoint<Dim>(checkpoint_, *solver_, scene_.cell_size, state, provenance_);
     last_checkpoint_ = Clock::now();
   }
@@ -192,6 +209,7 @@ class Runout {
     if (series_due) {
       ledger_.sample(record_.time, *solver_, scene_.energy_growth_limit);
       const FrontRow& row = front_.sample(record_.time, solver_->particles());
+      bodies_.sample(record_.time, solver_->bodies());
       progress.update(record_.time, record_.steps,
                       fmt::format("front {:.2f} m, {:.2f} m/s", row.robust_front, row.rms_speed));
     }
@@ -206,7 +224,7 @@ class Runout {
     const std::string reason = control_.interruption ? control_.interruption(record_.steps) : "";
     if (!reason.empty()) {
       save();
-      throw ComputationError(fmt::format("interrupted by {}; to go on: {}", reason, control_.resume_command));
+      throw InterruptedError(fmt::format("interrupted by {}; to go on: {}", reason, control_.resume_command));
     }
     if (scene_.checkpoint_interval > 0.0 && seconds_since(last_checkpoint_) > 60.0 * scene_.checkpoint_interval) save();
   }
@@ -224,6 +242,7 @@ class Runout {
     record_.wall_seconds = wall_seconds_before_ + seconds_since(start_);
     front_.write(folder_ / "front.csv");
     ledger_.write(folder_ / "ledger.csv");
+    bodies_.write(folder_ / "bodies.csv");
     write_text_file((folder_ / "summary.json").string(),
                     make_summary<Dim>(scene_, *solver_, record_, ledger_, front_).dump(2) + "\n");
   }
@@ -239,6 +258,7 @@ class Runout {
   Schedule series_{scene_.output.series_interval, 0}, frame_{scene_.output.frame_interval, 0};
   Ledger<Dim> ledger_;
   FrontSeries<Dim> front_;
+  BodySeries<Dim> bodies_;
   FrameWriter frames_;
   Clock::time_point last_checkpoint_ = start_;
   double wall_seconds_before_ = 0.0;

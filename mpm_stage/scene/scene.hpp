@@ -85,6 +85,7 @@ Material read_material(const std::string& name, const CaseNode& node, double res
 ParticleSet generate_particles(const CaseNode& root, int dimension, double cell_size, std::array<double, 3> origin,
                                const std::array<double, 3>& gravity, std::vector<Material>& materials);
 std::vector<TerrainInput> read_terrain(const CaseNode& root, const ParticleSet& particles);
+std::vector<MovingBody<3>> read_bodies(const CaseNode& root, int dimension);
 std::vector<double> assign_cohesion(const CaseFile& file, const std::vector<Material>& materials,
                                     ParticleSet& particles);
 

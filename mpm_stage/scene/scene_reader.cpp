@@ -65,6 +65,7 @@ void read_scheme(const CaseNode& root, Scene& scene) {
   o.mean_stress_relaxation =
       scheme.number_or("mean_stress_relaxation", "1", Range::between(0.0, 1.0), o.mean_stress_relaxation);
   o.contact_reach = scheme.number_or("contact_reach", "cells", Range::between(0.0, 1.0), o.contact_reach);
+  if (const auto share = scheme.number_if("surface_share", "1", Range::between(0.0, 0.2))) o.surface_share = *share;
   if (const auto cutoff = scheme.number_if("mass_cutoff", "1", Range::between(0.0, 0.1))) o.mass_cutoff = *cutoff;
   o.local_damping = root.object_or_empty("damping").number_or("local", "1", Range::between(0.0, 0.99), 0.0);
 }
@@ -204,6 +205,14 @@ double read_cell_size(const CaseNode& root, const std::string& size) {
   return cell_size;
 }
 
+// Elastic bodies keep their surface, and the stress along it with it. Soil that yields keeps neither, and where it
+// comes apart there is nothing to continue from.
+double default_surface_share(const Scene& scene) {
+  for (const std::int32_t id : scene.particles.material_id)
+    if (scene.materials[static_cast<std::size_t>(id)].model != Model::linear_elastic) return 0.0;
+  return 0.05;
+}
+
 }  // namespace
 
 Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_override, const std::string& size) {
@@ -218,6 +227,8 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
   const auto gravity = root.numbers_or("gravity", "m/s2", Range::any(), down, dimension);
   std::copy(gravity.begin(), gravity.end(), scene.gravity.begin());
   read_domain(root, scene);
+  scene.walls.bodies = read_bodies(root, scene.dimension);
+  scene.solver.surface_share = -1.0;
   read_scheme(root, scene);
   read_time(root, scene);
 
@@ -244,6 +255,7 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
   for (const auto& line : scene.terrain_lines) scene.terrain.add_line(line.points, line.friction, line.adhere);
   drop_rigid(scene);
   if (scene.particles.count() == 0) root.fail("materials", "no particle is left: all materials are rigid");
+  if (scene.solver.surface_share < 0.0) scene.solver.surface_share = default_surface_share(scene);
   scene.cohesion = assign_cohesion(file, scene.materials, scene.particles);
   read_base_motion(root, scene);
   read_output(root, scene);

@@ -20,6 +20,7 @@
 #include "mpm_stage/boundary/contact_gap.hpp"
 #include "mpm_stage/boundary/ground_friction.hpp"
 #include "mpm_stage/boundary/mirror_walls.hpp"
+#include "mpm_stage/boundary/surface_extension.hpp"
 #include "mpm_stage/grid/tiles.hpp"
 #include "mpm_stage/material/stress_update.hpp"
 #include "mpm_stage/step/grid_update.hpp"
@@ -44,7 +45,9 @@ class ExplicitSolver final : public Solver<Dim> {
         P_(std::move(particles)),
         materials_(materials),
         walls_(walls),
-        ground_(terrain, options.contact_reach * cell_size) {
+        bodies_(walls.bodies.size()),
+        ground_(terrain, options.contact_reach * cell_size),
+        extension_(options.surface_share) {
     double mass = 0.0;
     for (const double m : P_.mass) mass += m;
     mass_cutoff_ = (options.mass_cutoff < 0.0 ? Shape::mass_cutoff : options.mass_cutoff) * mass /
@@ -101,6 +104,7 @@ class ExplicitSolver final : public Solver<Dim> {
     report.next_dt = next_dt_;
     if (averaging_) average(report.sorted);
     update_stresses(dt);
+    time_ += dt;
     return report;
   }
 
@@ -110,6 +114,7 @@ class ExplicitSolver final : public Solver<Dim> {
   const WorkDone& work() const override { return work_; }
   const PhaseSeconds& seconds() const override { return seconds_; }
   std::array<double, Dim> boundary_impulse() const override { return impulse_; }
+  const std::vector<BodyState<Dim>>& bodies() const override { return bodies_; }
   std::vector<std::int32_t> removed() const override { return removed_; }
   std::vector<std::int32_t> held() const override {
     std::vector<std::int32_t> identities;
@@ -166,6 +171,8 @@ class ExplicitSolver final : public Solver<Dim> {
     return s;
   }
 
+  // Whether the nodes' sums have to be complete before any velocity is made.
+  bool needs_all_sums() const { return mirrors_.any() || extension_.active() || !bodies_.empty(); }
   // Share of the way to the average that the mean stress goes in a step.
   double relaxation(int material, double dt) const {
     const auto m = static_cast<std::size_t>(material);
@@ -181,6 +188,8 @@ class ExplicitSolver final : public Solver<Dim> {
   void limit_volumes();
   void sort();
   void lay_out();
+  std::vector<SurfaceRole> surface_roles() const;
+  bool in_reach_of_body(std::size_t a, int n) const;
   void mind_sides(std::size_t b, BlockMotion& motion);
   void update_grid(double dt, const std::array<double, Dim>& body, const std::array<double, Dim>& inertial);
   void gather(double dt, StepReport& report);
@@ -192,6 +201,7 @@ class ExplicitSolver final : public Solver<Dim> {
   void scatter_block(std::size_t b);
   void scatter_ground_gaps(std::size_t b);
   void rub_ground();
+  void move_bodies(double dt);
   [[noreturn]] void fail(std::size_t begin, std::size_t end, const std::string& what) const;
 
   SolverOptions options_;
@@ -201,12 +211,14 @@ class ExplicitSolver final : public Solver<Dim> {
   std::vector<Material> materials_;
   std::vector<MaterialConstants> constants_;
   Walls<Dim> walls_;
+  std::vector<BodyState<Dim>> bodies_;
   WallNodes<Dim> wall_nodes_;
   ContactNodes<Dim> ground_;
   MirrorWalls<Dim> mirrors_;
+  SurfaceExtension<Dim> extension_;
   std::array<double, Dim> body_{};
   bool averaging_ = false, leaving_ = false;
-  double mass_cutoff_ = 0.0, next_dt_ = 0.0, drift_ = 0.0, fastest_wave_ = 0.0, viscous_limit_ = 1e30;
+  double mass_cutoff_ = 0.0, time_ = 0.0, next_dt_ = 0.0, drift_ = 0.0, fastest_wave_ = 0.0, viscous_limit_ = 1e30;
   std::vector<double> wave_speed_;  // m/s, by material
 
   AlignedVector<Vec4> tiles_, forces_;     // per occupied block

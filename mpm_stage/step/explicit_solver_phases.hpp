@@ -16,8 +16,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
   bool shaken = false;
   for (const double a : inertial) shaken = shaken || a != 0.0;
   // Nodes at mirrors need their images' sums, so those are complete before any velocity is made.
-  const bool mirrored = mirrors_.any();
-  if (mirrored) {
+  const bool whole = needs_all_sums();
+  if (whole) {
 #pragma omp parallel for schedule(dynamic, 4)
     for (std::size_t a = 0; a < grid_.active(); ++a) {
       gather_tiles<Dim, Shape>(grid_, a, tiles_.data(), sums_.data() + a * block_nodes);
@@ -25,12 +25,17 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
     }
     mirrors_.fold(sums_.data());
     if constexpr (Split) mirrors_.fold(force_sums_.data());
+    if (extension_.active()) {
+      extension_.choose(sums_.data());
+      extension_.fold_momentum(sums_.data());
+      if constexpr (Split) extension_.fold_force(sums_.data(), force_sums_.data());
+    }
   }
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t a = 0; a < grid_.active(); ++a) {
     Vec4 own_sum[block_nodes], own_force[Split ? block_nodes : 1];
     const Vec4 *sum = own_sum, *force = own_force;
-    if (mirrored) {
+    if (whole) {
       sum = sums_.data() + a * block_nodes;
       force = Split ? force_sums_.data() + a * block_nodes : nullptr;
     } else {
@@ -85,9 +90,16 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
     grid_sums_[a] = sums;
   }
   if (ground_.any()) rub_ground();
-  if (mirrored) {
+  if (!bodies_.empty()) move_bodies(dt);
+  const auto reflect = [this] {
     mirrors_.reflect(velocity_.data());
     if constexpr (separate_change) mirrors_.reflect(change_.data());
+  };
+  if (mirrors_.any()) reflect();
+  if (extension_.active()) {
+    extension_.extend(velocity_.data());
+    if constexpr (separate_change) extension_.extend(change_.data());
+    if (mirrors_.any()) reflect();
   }
   for (const auto& s : grid_sums_) {
     work_.friction += s.friction;
@@ -121,6 +133,18 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_ground() {
       for (int d = 0; d < Dim; ++d) velocity_[k][d] = v[d];
       if constexpr (Split) add_change(k, lost);
     }
+  }
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::move_bodies(double dt) {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const std::array<double, Dim> v = walls_.bodies[b].velocity_at(time_ + 0.5 * dt);
+    work_.external += push_nodes<Dim>(grid_, walls_.bodies[b], v, sums_.data(), mass_cutoff_, velocity_.data(),
+                                      bodies_[b], [this](std::size_t k, const std::array<double, Dim>& dv) {
+                                        if constexpr (Split) add_change(k, dv);
+                                      });
+    for (int d = 0; d < Dim; ++d) bodies_[b].displacement[d] += dt * v[d];
   }
 }
 

@@ -65,7 +65,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
   if (Split) forces_.resize(tiles_.size());
   velocity_.resize(grid_.active() * block_nodes);
   if (separate_change) change_.resize(velocity_.size());
-  if (mirrors_.any()) {
+  if (needs_all_sums()) {
     sums_.resize(velocity_.size());
     if (Split) force_sums_.resize(velocity_.size());
   }
@@ -78,9 +78,51 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
     grip_.resize(velocity_.size());
     spread_.resize(velocity_.size());
   }
+  if (extension_.active()) extension_.update(grid_, surface_roles());
   grid_sums_.resize(grid_.active());
   motion_.resize(grid_.occupied());
   stress_work_.resize(grid_.occupied());
+}
+
+// Whether node n of active block a is in a body or may come to be before the next sort.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+bool ExplicitSolver<Dim, Shape, Split, Transfer>::in_reach_of_body(std::size_t a, int n) const {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    bool near = true;
+    for (int d = 0, k = n; d < Dim; ++d, k /= Block<Dim>::cells) {
+      const int node = grid_.active_index(a)[d] * Block<Dim>::cells + k % Block<Dim>::cells;
+      const double x = grid_.origin()[d] + node * h_ - bodies_[b].displacement[d];
+      near = near && x > walls_.bodies[b].low[d] - h_ && x < walls_.bodies[b].high[d] + h_;
+    }
+    if (near) return true;
+  }
+  return false;
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+std::vector<SurfaceRole> ExplicitSolver<Dim, Shape, Split, Transfer>::surface_roles() const {
+  std::vector<SurfaceRole> role(velocity_.size(), SurfaceRole::any);
+  for (std::size_t a = 0; a < grid_.active(); ++a) {
+    const NodeContact* contact = ground_.of_block(a);
+    for (int n = 0; n < block_nodes; ++n) {
+      SurfaceRole& r = role[a * block_nodes + static_cast<std::size_t>(n)];
+      if (contact && contact[n].count > 0) r = SurfaceRole::held;
+      if (in_reach_of_body(a, n)) r = SurfaceRole::held;
+      for (int d = 0, k = n; d < Dim; ++d, k /= Block<Dim>::cells) {
+        const int node = grid_.active_index(a)[d] * Block<Dim>::cells + k % Block<Dim>::cells;
+        for (int s = 0; s < 2; ++s) {
+          const auto& side = wall_nodes_.side[d][s];
+          const int depth = s == 0 ? node - side.node : side.node - node;
+          if (side.kind == WallKind::open || depth > 0) continue;
+          if (depth < 0)
+            r = SurfaceRole::none;
+          else if (side.kind != WallKind::slip)
+            r = std::max(r, SurfaceRole::held);
+        }
+      }
+    }
+  }
+  return role;
 }
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
@@ -97,6 +139,8 @@ SolverState<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::state() const {
   s.work = work_;
   s.seconds = seconds_;
   s.impulse = impulse_;
+  s.time = time_;
+  s.bodies = bodies_;
   s.removed = removed_;
   s.held = held();
   return s;
@@ -117,6 +161,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::resume(Particles<Dim> particle
   work_ = s.work;
   seconds_ = s.seconds;
   impulse_ = s.impulse;
+  time_ = s.time;
+  bodies_ = s.bodies;
   removed_ = s.removed;
   for (const std::int32_t k : s.held) held_[static_cast<std::size_t>(k)] = 1;
   particles_to_grid();

@@ -30,8 +30,11 @@ struct SolverOptions {
   double courant = 0.5;                 // 1, dt = courant h / max(c + |v|)
   double maximum_step = 1e30;           // s
   double contact_reach = 0.5;           // cells: nodes up to this distance above the ground belong to it
-  double local_damping = 0.0;           // 1, Cundall's
-  double mass_cutoff = -1.0;            // 1, relative to the mean particle mass; negative: the shape function's own
+  // 1, nodes under this share of the heaviest mass beside them are continued (surface_extension.hpp); 0: none. Negative
+  // in a scene: not given.
+  double surface_share = 0.0;
+  double local_damping = 0.0;  // 1, Cundall's
+  double mass_cutoff = -1.0;   // 1, relative to the mean particle mass; negative: the shape function's own
 };
 
 // Work done since the start, J (per metre in plane strain), each counted as energy taken from the particles except
@@ -65,7 +68,9 @@ struct SolverState {
   long sorts = 0;
   WorkDone work;
   PhaseSeconds seconds;
-  std::array<double, Dim> impulse{};        // N s
+  std::array<double, Dim> impulse{};  // N s
+  double time = 0.0;                  // s, since the start
+  std::vector<BodyState<Dim>> bodies;
   std::vector<std::int32_t> removed, held;  // identities
 };
 
@@ -92,7 +97,8 @@ class Solver {
   virtual const PhaseSeconds& seconds() const = 0;
   virtual double elastic_energy() const = 0;  // J
   virtual double unbalanced_force_ratio(const std::array<double, Dim>& body) const = 0;
-  virtual std::array<double, Dim> boundary_impulse() const = 0;  // N s since the start, on the particles
+  virtual std::array<double, Dim> boundary_impulse() const = 0;   // N s since the start, on the particles
+  virtual const std::vector<BodyState<Dim>>& bodies() const = 0;  // in the order of Walls::bodies
   virtual std::size_t grid_bytes() const = 0;
   virtual std::vector<std::int32_t> removed() const = 0;  // identities of particles that left
   virtual std::vector<std::int32_t> held() const = 0;     // identities of particles held at a side of the domain

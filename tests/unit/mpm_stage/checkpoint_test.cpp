@@ -25,6 +25,7 @@ const char* const case_text = R"({
     "clay": {"model": "tresca", "youngs_modulus": 1e6, "poisson_ratio": 0.4, "cohesion": 2000,
              "softening": {"end_strain": 0.5, "cohesion_ratio": 0.2}}},
   "terrain": [{"points": [[-10, 0], [2, 0], [10, -4]], "friction": 0.3}],
+  "bodies": [{"low": [-1, 0], "high": [-0.4, 1], "velocity_history": [[0, 2, 0], [0.3, 3, 1]]}],
   "particles": [
     {"shape": "box", "low": [0, 0], "high": [2, 1], "material": "clay", "velocity": [3, 0]},
     {"shape": "box", "low": [0, 1], "high": [2, 2], "material": "sand", "velocity": [3, 0]}],

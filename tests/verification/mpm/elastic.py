@@ -159,7 +159,7 @@ def cantilever_large(r):
     columns = np.unique(np.round(first["x"][:, 0], 6))[-2:]
     inner, outer = (np.mean(last["x"][np.abs(first["x"][:, 0] - c) < 1e-4, :2], axis=0) for c in columns)
     tip = outer + (length - columns[1]) / (columns[1] - columns[0]) * (outer - inner)
-    down, back = 0.5 * depth + 10.0 - tip[1], length - tip[0]
+    down, back = np.mean(first["x"][:, 1]) - tip[1], length - tip[0]
     rows.append(("drop of the tip over the length", down / length, -y / length, relative(down, -y), 0.02))
     rows.append(("shortening of the span over the length", back / length, (length - x) / length,
                  relative(back, length - x), 0.02))

@@ -12,23 +12,21 @@ def mohr_coulomb_point(r):
 
 
 def strip_footing(r):
-    """The footing's loss of momentum is the soil's resistance; its plateau over B c / 2 against 2 + pi (Prandtl 1920)."""
+    """The plateau of the push on half of the footing over c B / 2 against 2 + pi (Prandtl 1920)."""
     run = r.run()
-    frames = [run.frame(k) for k in range(len(run.frames()))]
-    frames = [f for f, g in zip(frames, frames[1:]) if g["time"] > f["time"]] + frames[-1:]
-    footing = frames[0]["mass"] > 1e3 * frames[0]["mass"].min()
-    mass = frames[0]["mass"][footing].sum()
-    time = np.array([f["time"] for f in frames])
-    speed = np.array([np.average(f["velocity"][footing, 1]) for f in frames])
-    depth = np.array([frames[0]["x"][footing, 1].mean() - f["x"][footing, 1].mean() for f in frames])
-    factor = mass * np.diff(speed) / np.diff(time) / (0.8 * 1000.0)
-    for d, n in list(zip(depth[1:], factor))[::3]:
-        print(f"     settlement {d / 1.6:.4f} B: resistance {n:.3f} c")
-    late = depth[1:] > 0.6 * depth[-1]
+    scene = r.scene()
+    body, cohesion = scene["bodies"][0], scene["materials"]["soil"]["cohesion"]
+    half = body["high"][0]
+    history = run.series("bodies.csv")
+    depth = -history["footing_displacement_y_m"]
+    factor = history["footing_force_y_N"] / (half * cohesion)
+    for d, n in list(zip(depth[1:], factor[1:]))[::4]:
+        print(f"     settlement {d / (2 * half):.4f} B: resistance {n:.3f} c")
+    late = depth > 0.6 * depth[-1]
     found = float(np.mean(factor[late]))
     return [("bearing pressure over c", found, 2 + math.pi, abs(found / (2 + math.pi) - 1), 0.03),
             ("its growth over the last third of the settlement", None, None,
-             abs(np.polyfit(depth[1:][late], factor[late], 1)[0] * np.ptp(depth[1:][late]) / found), 0.03)]
+             abs(np.polyfit(depth[late], factor[late], 1)[0] * np.ptp(depth[late]) / found), 0.03)]
 
 
 def vertical_cut(r):
