@@ -22,6 +22,43 @@ struct NodeGrip {
   std::array<double, 2> normal{};
 };
 
+// The push of the ground as friction sees it. A stiff body at rest rings, and its normal impulse with it; friction that
+// follows each swing lets go in the troughs and cannot make up for it at the crests, so a block creeps down a slope
+// that should hold it (at 96 % of the friction, a tenth of a cell a second). So what counts where material stays in
+// place is the normal force over the mass of the node, averaged over the time that a wave takes through
+// `smoothing_cells` cells: the same in the mean. Where it slides, other material comes to the node, and the memory is
+// the shorter the faster it slides: half as long at `forgetting_speed` (of the fastest wave's), so it never goes back
+// more than 0.06 cells.
+constexpr double smoothing_cells = 7.0, forgetting_speed = 0.015;
+
+// Share of the way to the present value that the memory goes in a step; `wave` and `slip` (cells) are how far the
+// fastest wave and the node's material move in it.
+inline double smoothing_share(double wave, double slip) {
+  const double speed = slip / (forgetting_speed * wave);
+  return std::min(1.0, wave / smoothing_cells * (1.0 + speed * speed));
+}
+
+// Speed along the ground, m/s. Lifting off is not sliding: it goes with a small push, which must not count for more.
+template <int Dim>
+inline double sliding_speed(const NodeContact& contact, const std::array<double, Dim>& v) {
+  const auto& n = contact.point[0].normal;
+  double squares = -(v[0] * n[0] + v[1] * n[1]) * (v[0] * n[0] + v[1] * n[1]);
+  for (int d = 0; d < Dim; ++d) squares += v[d] * v[d];
+  return std::sqrt(std::max(0.0, squares));
+}
+
+// `smoothed` (m/s2, friction coefficient times normal impulse over mass and time) is the node's memory, 0 without one.
+// Sets the capacity of the grip; a node that the ground has just let go of still grips with what it remembers.
+inline void smooth_grip(const NodeContact& contact, double mass, double dt, double share, double& smoothed,
+                        NodeGrip& grip) {
+  const double now = grip.capacity / (mass * dt);
+  smoothed = smoothed > 0.0 ? smoothed + share * (now - smoothed) : now;
+  if (grip.mass == 0.0 && (contact.count != 1 || contact.adhere || smoothed <= 0.0)) return;
+  if (grip.mass == 0.0) grip.normal = contact.point[0].normal;
+  grip.mass = mass;
+  grip.capacity = smoothed * mass * dt;
+}
+
 // Stops the approach of a node. The approach is free up to `allowed` (m/s), at which the gap between material and
 // ground closes in this step (contact_gap.hpp): a node's shape function reaches over a gap, and without this material
 // would come to rest in the air and climb a little with each bounce.

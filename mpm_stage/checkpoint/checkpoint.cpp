@@ -144,6 +144,7 @@ void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, do
   file.group("/numbers");
   file.attribute("/numbers", "dimension", static_cast<double>(Dim));
   file.attribute("/numbers", "cell_size", cell_size);
+  file.attribute("/numbers", "grip_blocks", static_cast<double>(state.grip.blocks.size()));
   for_each_number(state, copy, [&](const char* name, double value) { file.attribute("/numbers", name, value); });
 
   const Particles<Dim>& P = solver.particles();
@@ -162,6 +163,13 @@ void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, do
   file.write("/grid/blocks", std::span<const std::int64_t>(blocks), Dim, "1", "occupied blocks at the last sort");
   file.write("/grid/first", std::span<const std::int64_t>(first), 0, "1", "first particle of each block, and the end");
   file.write("/grid/wave_speed", state.wave_speed, 0, "m/s", "by material");
+  if (!state.grip.blocks.empty()) {
+    std::vector<std::int64_t> gripping;
+    for (const auto& index : state.grip.blocks) gripping.insert(gripping.end(), index.begin(), index.end());
+    file.write("/grid/grip_blocks", std::span<const std::int64_t>(gripping), Dim, "1", "blocks that touch the ground");
+    file.write("/grid/grip", state.grip.smoothed, Block<Dim>::nodes, "m/s2",
+               "smoothed friction per mass of their nodes");
+  }
   file.write("/particles/removed", std::span<const std::int32_t>(state.removed), 0, "1", "rows of the input");
   file.write("/particles/held", std::span<const std::int32_t>(state.held), 0, "1", "rows of the input");
 
@@ -221,6 +229,13 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
   state.blocks.resize(blocks.size() / Dim);
   for (std::size_t k = 0; k < blocks.size(); ++k) state.blocks[k / Dim][k % Dim] = static_cast<int>(blocks[k]);
   state.first.assign(first.begin(), first.end());
+  const auto gripping = static_cast<std::size_t>(file.number_attribute("/numbers", "grip_blocks"));
+  if (gripping > 0) {
+    const auto index = file.integers("/grid/grip_blocks", gripping, Dim);
+    state.grip.blocks.resize(gripping);
+    for (std::size_t k = 0; k < index.size(); ++k) state.grip.blocks[k / Dim][k % Dim] = static_cast<int>(index[k]);
+    state.grip.smoothed = file.doubles("/grid/grip", gripping, Block<Dim>::nodes);
+  }
   state.wave_speed = file.doubles("/grid/wave_speed");
   check_indices(file, "/particles/material", materials, 0, static_cast<std::int64_t>(state.wave_speed.size()));
   const auto removed = file.integers("/particles/removed"), held = file.integers("/particles/held");

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 
 #include "common/error.hpp"
 #include "mpm_stage/boundary/contact_gap.hpp"
@@ -189,6 +190,8 @@ class ExplicitSolver final : public Solver<Dim> {
   void sort();
   void lay_out();
   std::vector<SurfaceRole> surface_roles() const;
+  GripMemory<Dim> grip_memory() const;
+  void remember_grip(const GripMemory<Dim>& memory);
   bool in_reach_of_body(std::size_t a, int n) const;
   void mind_sides(std::size_t b, BlockMotion& motion);
   void update_grid(double dt, const std::array<double, Dim>& body, const std::array<double, Dim>& inertial);
@@ -229,6 +232,8 @@ class ExplicitSolver final : public Solver<Dim> {
   std::vector<Gap> gap_tiles_;
   std::vector<NodeGrip> grip_;  // per active block
   std::vector<double> spread_;
+  std::vector<double> smoothed_grip_;              // m/s2, per active block
+  std::vector<std::array<int, Dim>> grip_blocks_;  // the active blocks that it belongs to
   std::vector<GridSums<Dim>> grid_sums_;
   std::vector<BlockMotion> motion_;
   std::vector<StressWork> stress_work_;  // per occupied block

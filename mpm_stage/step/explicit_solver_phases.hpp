@@ -55,6 +55,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
       if (m <= mass_cutoff_) {
         out = Vec4{};
         if constexpr (separate_change) change_[a * block_nodes + n] = Vec4{};
+        if (contact) smoothed_grip_[a * block_nodes + n] = 0.0;
         continue;
       }
       std::array<double, Dim> v, before{};
@@ -70,8 +71,12 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
         if (options_.local_damping > 0.0)
           sums.damping += m * apply_local_damping<Dim>(options_.local_damping, dt, before, v);
       const std::array<double, Dim> pushed = v;
-      if (contact && contact[n].count > 0)
-        grip_[a * block_nodes + n] = stop_approach<Dim>(contact[n], m, std::max(0.0, gap[n].value) / dt, v);
+      if (contact && contact[n].count > 0) {
+        NodeGrip& grip = grip_[a * block_nodes + n];
+        grip = stop_approach<Dim>(contact[n], m, std::max(0.0, gap[n].value) / dt, v);
+        const double share = smoothing_share(dt * h1_ * fastest_wave_, dt * h1_ * sliding_speed<Dim>(contact[n], v));
+        smooth_grip(contact[n], m, dt, share, smoothed_grip_[a * block_nodes + n], grip);
+      }
       if (wall_nodes_.any) {
         std::array<int, Dim> node;
         for (int d = 0, k = n; d < Dim; ++d, k /= B) node[d] = grid_.active_index(a)[d] * B + k % B;

@@ -59,6 +59,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::sort() {
 // Memory and neighbours of the grid's blocks.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
+  const GripMemory<Dim> memory = grip_memory();
   ground_.update(grid_);
   mirrors_.update(grid_, wall_nodes_, Shape::support == 4 ? 2 : 1);
   tiles_.resize(grid_.occupied() * tile_nodes);
@@ -77,11 +78,39 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
     gap_tiles_.resize(tiles_.size());
     grip_.resize(velocity_.size());
     spread_.resize(velocity_.size());
+    remember_grip(memory);
   }
   if (extension_.active()) extension_.update(grid_, surface_roles());
   grid_sums_.resize(grid_.active());
   motion_.resize(grid_.occupied());
   stress_work_.resize(grid_.occupied());
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+GripMemory<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::grip_memory() const {
+  GripMemory<Dim> memory;
+  for (std::size_t b = 0; b < grip_blocks_.size(); ++b) {
+    const auto first = smoothed_grip_.begin() + static_cast<std::ptrdiff_t>(b * block_nodes);
+    if (std::none_of(first, first + block_nodes, [](double s) { return s > 0.0; })) continue;
+    memory.blocks.push_back(grip_blocks_[b]);
+    memory.smoothed.insert(memory.smoothed.end(), first, first + block_nodes);
+  }
+  return memory;
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::remember_grip(const GripMemory<Dim>& memory) {
+  smoothed_grip_.assign(velocity_.size(), 0.0);
+  grip_blocks_.resize(grid_.active());
+  std::map<std::array<int, Dim>, std::size_t> known;
+  for (std::size_t b = 0; b < memory.blocks.size(); ++b) known[memory.blocks[b]] = b;
+  for (std::size_t a = 0; a < grid_.active(); ++a) {
+    grip_blocks_[a] = grid_.active_index(a);
+    const auto it = known.find(grip_blocks_[a]);
+    if (it == known.end()) continue;
+    const auto first = memory.smoothed.begin() + static_cast<std::ptrdiff_t>(it->second * block_nodes);
+    std::copy(first, first + block_nodes, smoothed_grip_.begin() + static_cast<std::ptrdiff_t>(a * block_nodes));
+  }
 }
 
 // Whether node n of active block a is in a body or may come to be before the next sort.
@@ -141,6 +170,7 @@ SolverState<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::state() const {
   s.impulse = impulse_;
   s.time = time_;
   s.bodies = bodies_;
+  s.grip = grip_memory();
   s.removed = removed_;
   s.held = held();
   return s;
@@ -163,6 +193,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::resume(Particles<Dim> particle
   impulse_ = s.impulse;
   time_ = s.time;
   bodies_ = s.bodies;
+  remember_grip(s.grip);
   removed_ = s.removed;
   for (const std::int32_t k : s.held) held_[static_cast<std::size_t>(k)] = 1;
   particles_to_grid();

@@ -56,6 +56,13 @@ struct StepReport {
   bool sorted = false;
 };
 
+// Smoothed grip of the nodes on the ground (ground_friction.hpp), by blocks.
+template <int Dim>
+struct GripMemory {
+  std::vector<std::array<int, Dim>> blocks;
+  std::vector<double> smoothed;  // m/s2, Block::nodes per block
+};
+
 // What a solver has to remember besides its particles to go on from where it was, bit for bit.
 template <int Dim>
 struct SolverState {
@@ -71,6 +78,7 @@ struct SolverState {
   std::array<double, Dim> impulse{};  // N s
   double time = 0.0;                  // s, since the start
   std::vector<BodyState<Dim>> bodies;
+  GripMemory<Dim> grip;
   std::vector<std::int32_t> removed, held;  // identities
 };
 

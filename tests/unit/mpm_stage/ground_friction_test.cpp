@@ -1,0 +1,70 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "mpm_stage/step/solver.hpp"
+
+using namespace tailrun::mpm;
+
+namespace {
+
+// Displacement (m) along a plane of `angle` (deg) between 0.3 and 0.8 s of a stiff block of 4 x 1 m, and the speed that
+// it had at 0.3 s.
+struct Slide {
+  double distance, speed;
+};
+
+Slide slide_of_block(double angle, double friction) {
+  constexpr double h = 0.25, spacing = 0.5 * h, density = 2000.0, k0 = 0.42857;
+  const double b = angle * M_PI / 180.0, c = std::cos(b), s = std::sin(b);
+  Particles<2> P;
+  P.resize(32 * 8, true, false);
+  for (std::size_t p = 0; p < P.count(); ++p) {
+    const double x = (static_cast<double>(p % 32) + 0.5) * spacing, y = (static_cast<double>(p / 32) + 0.5) * spacing;
+    P.position[0][p] = c * x + s * y;
+    P.position[1][p] = -s * x + c * y;
+    P.volume[p] = spacing * spacing;
+    P.mass[p] = density * P.volume[p];
+    P.identity[p] = static_cast<std::int32_t>(p);
+    // Infinite slope: stress normal to it from the weight above, shear as far as friction allows.
+    const double normal = -density * 9.81 * c * (1.0 - y), along = k0 * normal;
+    const double shear = -std::min(friction, s / c) * normal;
+    P.stress[0][p] = along * c * c + normal * s * s + 2.0 * shear * c * s;
+    P.stress[1][p] = along * s * s + normal * c * c - 2.0 * shear * c * s;
+    P.stress[2][p] = along;
+    P.stress[3][p] = (normal - along) * c * s + shear * (c * c - s * s);
+  }
+  Material rock;
+  rock.name = "rock";
+  rock.model = Model::linear_elastic;
+  rock.youngs_modulus = 1e9;
+  rock.poisson_ratio = 0.3;
+  Terrain plane;
+  plane.add_line({{{-100.0 * c, 100.0 * s}}, {{100.0 * c, -100.0 * s}}}, {friction}, false);
+  auto solver = make_solver<2>({}, h, {}, std::move(P), {rock}, plane, Walls<2>{});
+  solver->start(1e30);
+  const auto mean = [&](const auto& column) {
+    double sum = 0.0;
+    for (std::size_t p = 0; p < solver->particles().count(); ++p) sum += c * column[0][p] - s * column[1][p];
+    return sum / static_cast<double>(solver->particles().count());
+  };
+  double time = 0.0;
+  while (time < 0.3) time += solver->step({0, -9.81}, {0, 0}, 1e30).dt;
+  const double start = mean(solver->particles().position), speed = mean(solver->particles().velocity), from = time;
+  while (time < 0.8) time += solver->step({0, -9.81}, {0, 0}, 1e30).dt;
+  return {mean(solver->particles().position) - start - speed * (time - from - 0.5), speed};
+}
+
+}  // namespace
+
+TEST_CASE("a ringing block stays where it is on 96 and 98 % of its friction") {
+  CHECK(std::fabs(slide_of_block(30.0, 0.6).distance) < 0.001 * 0.25);
+  CHECK(std::fabs(slide_of_block(19.0, 0.35).distance) < 0.001 * 0.25);
+}
+
+TEST_CASE("a sliding block loses friction times its weight on the plane, no more and no less") {
+  const double b = 35.0 * M_PI / 180.0, a = 9.81 * (std::sin(b) - 0.6 * std::cos(b));
+  const Slide slide = slide_of_block(35.0, 0.6);
+  CHECK(slide.speed == doctest::Approx(0.3 * a).epsilon(0.02));
+  CHECK(slide.distance == doctest::Approx(0.5 * slide.speed + 0.5 * a * 0.25).epsilon(0.01));
+}
