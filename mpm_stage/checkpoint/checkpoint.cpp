@@ -59,6 +59,7 @@ void for_each_number(SolverState<Dim>& s, RunState& r, Action action) {
   action("solver_time", s.time);
   integer("steps", r.record.steps);
   action("particle_steps", r.record.particle_steps);
+  action("asleep_particle_steps", r.record.asleep_particle_steps);
   action("time", r.record.time);
   action("shortest_step", r.record.dt_min);
   action("longest_step", r.record.dt_max);
@@ -170,6 +171,8 @@ void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, do
     file.write("/grid/grip", state.grip.smoothed, Block<Dim>::nodes, "m/s2",
                "smoothed friction per mass of their nodes");
   }
+  file.write("/grid/sleep_clocks", state.sleep_clocks, 0, "s",
+             "of each block: calm so far, or minus the rest of its nap");
   file.write("/particles/removed", std::span<const std::int32_t>(state.removed), 0, "1", "rows of the input");
   file.write("/particles/held", std::span<const std::int32_t>(state.held), 0, "1", "rows of the input");
 
@@ -237,6 +240,10 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
     state.grip.smoothed = file.doubles("/grid/grip", gripping, Block<Dim>::nodes);
   }
   state.wave_speed = file.doubles("/grid/wave_speed");
+  state.sleep_clocks = file.doubles("/grid/sleep_clocks");
+  if (!state.sleep_clocks.empty() && state.sleep_clocks.size() != state.blocks.size())
+    file.fail("/grid/sleep_clocks",
+              fmt::format("has {} values for {} blocks", state.sleep_clocks.size(), state.blocks.size()));
   check_indices(file, "/particles/material", materials, 0, static_cast<std::int64_t>(state.wave_speed.size()));
   const auto removed = file.integers("/particles/removed"), held = file.integers("/particles/held");
   state.removed.assign(removed.begin(), removed.end());

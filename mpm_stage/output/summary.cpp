@@ -61,6 +61,7 @@ Json features(const Scene& scene) {
   say(!scene.walls.bodies.empty(), "moving bodies");
   say(scene.base.shaken(), "base shaking");
   say(o.local_damping > 0.0, "local damping");
+  say(o.sleep.speed > 0.0, "sleeping blocks");
   return {{"chosen", chosen}, {"skipped", skipped}};
 }
 
@@ -144,6 +145,7 @@ Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& reco
                        {"sort", s.sort},
                        {"output_and_sampling", record.output_seconds}};
   j["threads"] = omp_get_max_threads();
+  j["share_asleep"] = record.particle_steps > 0.0 ? record.asleep_particle_steps / record.particle_steps : 0.0;
   j["particle_steps_per_second"] = compute > 0.0 ? record.particle_steps / compute : 0.0;
   j["sorts"] = solver.sorts();
   j["occupied_blocks"] = solver.grid().occupied();

@@ -15,6 +15,7 @@ namespace tailrun::mpm {
 struct RunRecord {
   long steps = 0;
   double particle_steps = 0.0;
+  double asleep_particle_steps = 0.0;   // of them, in blocks that slept
   double time = 0.0;                    // s, simulated
   double dt_min = 1e300, dt_max = 0.0;  // s
   double wall_seconds = 0.0, output_seconds = 0.0, setup_seconds = 0.0;

@@ -195,6 +195,7 @@ class Runout {
       record_.time = after;
       ++record_.steps;
       record_.particle_steps += static_cast<double>(solver_->particles().count());
+      record_.asleep_particle_steps += static_cast<double>(report.asleep);
       record_.dt_min = std::min(record_.dt_min, report.dt);
       record_.dt_max = std::max(record_.dt_max, report.dt);
       record_.largest_kinetic = std::max(record_.largest_kinetic, report.kinetic_energy);

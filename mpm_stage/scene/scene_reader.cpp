@@ -70,6 +70,17 @@ void read_scheme(const CaseNode& root, Scene& scene) {
   o.local_damping = root.object_or_empty("damping").number_or("local", "1", Range::between(0.0, 0.99), 0.0);
 }
 
+void read_sleep(const CaseNode& root, Scene& scene) {
+  const auto node = root.object_if("sleep");
+  if (!node) return;
+  SleepOptions& o = scene.solver.sleep;
+  o.speed = node->number("speed", "m/s", Range::non_negative());
+  o.calm = node->number_or("calm", "s", Range::positive(), o.calm);
+  o.nap = node->number_or("nap", "s", Range::positive(), o.nap);
+  if (o.speed > 0.0 && scene.solver.transfer == TransferName::apic && scene.solver.local_damping == 0.0)
+    root.fail("sleep", "needs scheme/transfer 'aflip' or 'flip': APIC puts momentum and forces on the nodes as one");
+}
+
 void read_time(const CaseNode& root, Scene& scene) {
   const CaseNode time = root.object("time");
   scene.end_time = time.number("end", "s", Range::positive());
@@ -230,6 +241,7 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
   scene.walls.bodies = read_bodies(root, scene.dimension);
   scene.solver.surface_share = -1.0;
   read_scheme(root, scene);
+  read_sleep(root, scene);
   read_time(root, scene);
 
   const double factor = root.object_or_empty("residual_strength").number_or("factor", "1", Range::positive(), 1.0);

@@ -25,6 +25,7 @@
 #include "mpm_stage/grid/tiles.hpp"
 #include "mpm_stage/material/stress_update.hpp"
 #include "mpm_stage/step/grid_update.hpp"
+#include "mpm_stage/step/sleeping_blocks.hpp"
 #include "mpm_stage/step/solver.hpp"
 #include "mpm_stage/transfer/grid_to_particles.hpp"
 #include "mpm_stage/transfer/particles_to_grid.hpp"
@@ -48,7 +49,8 @@ class ExplicitSolver final : public Solver<Dim> {
         walls_(walls),
         bodies_(walls.bodies.size()),
         ground_(terrain, options.contact_reach * cell_size),
-        extension_(options.surface_share) {
+        extension_(options.surface_share),
+        sleep_(options.sleep) {
     double mass = 0.0;
     for (const double m : P_.mass) mass += m;
     mass_cutoff_ = (options.mass_cutoff < 0.0 ? Shape::mass_cutoff : options.mass_cutoff) * mass /
@@ -95,6 +97,8 @@ class ExplicitSolver final : public Solver<Dim> {
     const double dt = next_dt_;
     report.dt = dt;
     for (int d = 0; d < Dim; ++d) body_[d] = body[d] + inertial[d];
+    if (sleep_.active() && std::any_of(inertial.begin(), inertial.end(), [](double a) { return a != 0.0; }))
+      sleep_.wake_all();
     update_grid(dt, body, inertial);
     gather(dt, report);
     if (drift_ > largest_drift || leaving_) {
@@ -152,7 +156,7 @@ class ExplicitSolver final : public Solver<Dim> {
   struct BlockMotion {
     double far = 0.0, wave = 0.0, fast = 0.0, kinetic = 0.0;
     double stopped = 0.0;  // J, taken from particles held at a side of the domain
-    bool outside = false;
+    bool outside = false, asleep = false;
   };
 
   static void add_time(double& phase, Clock::time_point since) {
@@ -193,6 +197,9 @@ class ExplicitSolver final : public Solver<Dim> {
   GripMemory<Dim> grip_memory() const;
   void remember_grip(const GripMemory<Dim>& memory);
   bool in_reach_of_body(std::size_t a, int n) const;
+  bool still(std::size_t a) const;
+  bool sleeps_on(std::size_t b, double dt);
+  void lay_to_rest(std::size_t b, BlockMotion& motion);
   void mind_sides(std::size_t b, BlockMotion& motion);
   void update_grid(double dt, const std::array<double, Dim>& body, const std::array<double, Dim>& inertial);
   void gather(double dt, StepReport& report);
@@ -219,6 +226,7 @@ class ExplicitSolver final : public Solver<Dim> {
   ContactNodes<Dim> ground_;
   MirrorWalls<Dim> mirrors_;
   SurfaceExtension<Dim> extension_;
+  SleepingBlocks<Dim> sleep_;
   std::array<double, Dim> body_{};
   bool averaging_ = false, leaving_ = false;
   double mass_cutoff_ = 0.0, time_ = 0.0, next_dt_ = 0.0, drift_ = 0.0, fastest_wave_ = 0.0, viscous_limit_ = 1e30;

@@ -33,6 +33,12 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
   }
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t a = 0; a < grid_.active(); ++a) {
+    if (still(a)) {
+      std::fill_n(velocity_.data() + a * block_nodes, block_nodes, Vec4{});
+      grid_sums_[a] = {};
+      if (ground_.of_block(a)) std::fill_n(grip_.data() + a * block_nodes, block_nodes, NodeGrip{});
+      continue;
+    }
     Vec4 own_sum[block_nodes], own_force[Split ? block_nodes : 1];
     const Vec4 *sum = own_sum, *force = own_force;
     if (whole) {
@@ -164,6 +170,11 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& 
     load_tile<Dim, Shape>(grid_, b, velocity_.data(), tile);
     if constexpr (Flip && separate_change) load_tile<Dim, Shape>(grid_, b, change_.data(), change);
     BlockMotion motion;
+    if (sleep_.asleep(b) && sleeps_on(b, dt)) {
+      motion_[b] = BlockMotion{.asleep = true};
+      if (averaging_ && sleep_.stale(b)) scatter_average(b);
+      continue;
+    }
     for (const Run& run : grid_.runs(b)) {
       const MotionExtremes e =
           mpm::grid_to_particles<Shape, Flip, Affine>(s, tile, change, corner(b), P_, run.begin, run.end);
@@ -173,6 +184,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& 
       motion.kinetic += e.kinetic;
     }
     if (walls_.bounded) mind_sides(b, motion);
+    if (sleep_.active() && sleep_.fall_asleep(b, motion.fast, dt)) lay_to_rest(b, motion);
     motion_[b] = motion;
     // The block's particles are still near the core. Should it be time to sort, this is done again after it.
     if (averaging_ && std::isfinite(motion.kinetic) && drift_ + motion.far * h1_ <= largest_drift) scatter_average(b);
@@ -193,10 +205,51 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& 
     report.kinetic_energy += m.kinetic;
     leaving_ = leaving_ || m.outside;
     work_.removed += m.stopped;
+    if (m.asleep) report.asleep += grid_.last_particle(b) - grid_.first_particle(b);
   }
   report.maximum_speed = std::sqrt(fast);
   drift_ += far * h1_;
   add_time(seconds_.grid_to_particles, since);
+}
+
+// Whether only sleeping particles reach the nodes of active block a.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+bool ExplicitSolver<Dim, Shape, Split, Transfer>::still(std::size_t a) const {
+  if (!sleep_.active()) return false;
+  for (const int b : grid_.tiles_around(a))
+    if (b >= 0 && !sleep_.asleep(static_cast<std::size_t>(b))) return false;
+  return true;
+}
+
+// Whether a sleeping block's nodes let it sleep on.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+bool ExplicitSolver<Dim, Shape, Split, Transfer>::sleeps_on(std::size_t b, double dt) {
+  Vec4 tile[tile_nodes];
+  load_tile<Dim, Shape>(grid_, b, velocity_.data(), tile);
+  double fastest = 0.0;
+  for (const Vec4& v : tile) {
+    double squared = 0.0;
+    for (int d = 0; d < Dim; ++d) squared += v[d] * v[d];
+    fastest = std::max(fastest, squared);
+  }
+  if (fastest < sleep_.speed() * sleep_.speed()) return sleep_.doze(b, dt);
+  sleep_.wake(b);
+  return false;
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_to_rest(std::size_t b, BlockMotion& motion) {
+  motion.stopped += motion.kinetic;
+  motion.kinetic = motion.fast = motion.wave = 0.0;
+  motion.asleep = true;
+  const auto still = [&](auto& columns) {
+    for (auto& column : columns)
+      if (!column.empty())
+        std::fill(column.data() + grid_.first_particle(b), column.data() + grid_.last_particle(b), 0.0);
+  };
+  still(P_.velocity);
+  still(P_.affine);
+  still(P_.gradient);
 }
 
 // Particles beyond a side of the domain: held there, or noticed, so that the sort deals with them.
@@ -261,6 +314,13 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses(double dt) {
     std::vector<double> trace, shift;
 #pragma omp for schedule(dynamic, 4)
     for (std::size_t b = 0; b < grid_.occupied(); ++b) {
+      if (sleep_.asleep(b)) {
+        stress_work_[b] = {};
+        if (!sleep_.stale(b)) continue;
+        sleep_.put_on_nodes(b);
+        scatter_block(b);
+        continue;
+      }
       stress_work_[b] = update_stresses_of(b, dt, trace, shift);
       if (std::isfinite(stress_work_[b].dissipated)) scatter_block(b);
     }

@@ -33,9 +33,16 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::sort() {
       work_.removed += 0.5 * P_.mass[p] * speed_squared(p);
     }
   }
+  if (sleep_.active()) sleep_.before_sort(grid_);
   grid_.sort(P_, keep);
   if (grid_.occupied() == 0) throw ComputationError("no particle is left in the domain");
   lay_out();
+  if (sleep_.active())
+    sleep_.after_sort(grid_, [this](std::size_t b) {
+      for (std::size_t p = grid_.first_particle(b); p < grid_.last_particle(b); ++p)
+        if (speed_squared(p) > 0.0) return true;
+      return false;
+    });
   ++sorts_;
   drift_ = 0.0;
   leaving_ = false;
@@ -173,6 +180,7 @@ SolverState<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::state() const {
   s.grip = grip_memory();
   s.removed = removed_;
   s.held = held();
+  s.sleep_clocks = sleep_.clocks();
   return s;
 }
 
@@ -182,6 +190,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::resume(Particles<Dim> particle
   P_ = std::move(particles);
   grid_.restore(s.blocks, s.first, P_.material);
   lay_out();
+  if (sleep_.active()) sleep_.restore(s.sleep_clocks);
   wave_speed_ = s.wave_speed;
   next_dt_ = s.next_dt;
   viscous_limit_ = s.viscous_limit;

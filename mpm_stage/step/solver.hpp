@@ -18,6 +18,13 @@ namespace tailrun::mpm {
 enum class ShapeName { linear, quadratic, cubic, gimp };
 enum class TransferName { apic, flip, aflip };
 
+// Blocks at rest are left out of the step (sleeping_blocks.hpp).
+struct SleepOptions {
+  double speed = 0.0;  // m/s, of a block's fastest particle; 0: no block sleeps
+  double calm = 0.25;  // s, under that speed until it sleeps
+  double nap = 1.0;    // s, after which it wakes in any case
+};
+
 struct SolverOptions {
   ShapeName shape = ShapeName::quadratic;
   TransferName transfer = TransferName::aflip;
@@ -34,7 +41,8 @@ struct SolverOptions {
   // in a scene: not given.
   double surface_share = 0.0;
   double local_damping = 0.0;  // 1, Cundall's
-  double mass_cutoff = -1.0;   // 1, relative to the mean particle mass; negative: the shape function's own
+  SleepOptions sleep;
+  double mass_cutoff = -1.0;  // 1, relative to the mean particle mass; negative: the shape function's own
 };
 
 // Work done since the start, J (per metre in plane strain), each counted as energy taken from the particles except
@@ -54,6 +62,7 @@ struct StepReport {
   double kinetic_energy = 0.0;  // J, sum of m v^2 / 2
   double maximum_speed = 0.0;   // m/s
   bool sorted = false;
+  std::size_t asleep = 0;  // particles left out
 };
 
 // Smoothed grip of the nodes on the ground (ground_friction.hpp), by blocks.
@@ -80,6 +89,7 @@ struct SolverState {
   std::vector<BodyState<Dim>> bodies;
   GripMemory<Dim> grip;
   std::vector<std::int32_t> removed, held;  // identities
+  std::vector<double> sleep_clocks;         // s, of each block; none when nothing may sleep
 };
 
 template <int Dim>

@@ -74,10 +74,15 @@ void run(const Folder& folder, const std::string& to, bool resume, long stop, co
 
 TEST_CASE("a run that was interrupted twice and went on leaves the same bytes as one in a piece") {
   const Folder folder("resume");
-  run(folder, "whole", false, 0);
-  CHECK_THROWS_WITH_AS(run(folder, "parts", false, 37), doctest::Contains("checkpoint.h5"), ComputationError);
-  CHECK_THROWS_WITH_AS(run(folder, "parts", true, 111), doctest::Contains("run again"), ComputationError);
-  run(folder, "parts", true, 0);
+  std::string text = case_text;
+  SUBCASE("all awake") {}
+  SUBCASE("blocks that sleep") {
+    text.insert(text.rfind('}'), R"(, "sleep": {"speed": 3.5, "calm": 0.03, "nap": 0.05})");
+  }
+  run(folder, "whole", false, 0, text);
+  CHECK_THROWS_WITH_AS(run(folder, "parts", false, 37, text), doctest::Contains("checkpoint.h5"), ComputationError);
+  CHECK_THROWS_WITH_AS(run(folder, "parts", true, 111, text), doctest::Contains("run again"), ComputationError);
+  run(folder, "parts", true, 0, text);
 
   const std::string front = text_of(folder / "whole/front.csv"), ledger = text_of(folder / "whole/ledger.csv");
   REQUIRE(std::count(front.begin(), front.end(), '\n') > 20);
@@ -95,6 +100,8 @@ TEST_CASE("a run that was interrupted twice and went on leaves the same bytes as
     CHECK(a.volume == b.volume);
     CHECK(a.plastic_deviatoric_strain == b.plastic_deviatoric_strain);
   }
+  const bool slept = text_of(folder / "parts/summary.json").find("\"share_asleep\": 0.0,") == std::string::npos;
+  CHECK(slept == (text != case_text));
   CHECK_FALSE(std::filesystem::exists(folder / "parts/checkpoint.h5"));
 }
 
