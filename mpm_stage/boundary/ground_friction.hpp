@@ -28,8 +28,8 @@ struct NodeGrip {
 // place is the normal force over the mass of the node, averaged over the time that a wave takes through
 // `smoothing_cells` cells: the same in the mean. Where it slides, other material comes to the node, and the memory is
 // the shorter the faster it slides: half as long at `forgetting_speed` (of the fastest wave's), so it never goes back
-// more than 0.06 cells.
-constexpr double smoothing_cells = 7.0, forgetting_speed = 0.015;
+// more than 0.02 cells.
+constexpr double smoothing_cells = 7.0, forgetting_speed = 0.004;
 
 // Share of the way to the present value that the memory goes in a step; `wave` and `slip` (cells) are how far the
 // fastest wave and the node's material move in it.
