@@ -55,12 +55,17 @@ void read_scheme(const CaseNode& root, Scene& scene) {
             : shape == "quadratic" ? ShapeName::quadratic
             : shape == "cubic"     ? ShapeName::cubic
                                    : ShapeName::gimp;
-  const std::string transfer = scheme.choice_or("transfer", {"apic", "aflip", "flip"}, "aflip");
-  o.transfer = transfer == "apic" ? TransferName::apic : transfer == "aflip" ? TransferName::aflip : TransferName::flip;
+  const std::string transfer = scheme.choice_or("transfer", {"apic", "aflip", "flip", "fmpm"}, "aflip");
+  o.transfer = transfer == "apic"    ? TransferName::apic
+               : transfer == "aflip" ? TransferName::aflip
+               : transfer == "flip"  ? TransferName::flip
+                                     : TransferName::fmpm;
   if (o.transfer == TransferName::aflip)
     o.transfer_damping = scheme.number_or("transfer_damping", "1", Range::between(0.0, 10.0), o.transfer_damping);
   if (o.transfer == TransferName::flip)
     o.flip_share = scheme.number_or("flip_share", "1", Range::between(0.0, 1.0), 0.99);
+  if (o.transfer == TransferName::fmpm)
+    o.fmpm_order = static_cast<int>(scheme.integer_or("fmpm_order", 2, 6, o.fmpm_order));
   o.volumetric_average = scheme.boolean_or("volumetric_average", true);
   o.mean_stress_relaxation =
       scheme.number_or("mean_stress_relaxation", "1", Range::between(0.0, 1.0), o.mean_stress_relaxation);
@@ -68,6 +73,10 @@ void read_scheme(const CaseNode& root, Scene& scene) {
   if (const auto share = scheme.number_if("surface_share", "1", Range::between(0.0, 0.2))) o.surface_share = *share;
   if (const auto cutoff = scheme.number_if("mass_cutoff", "1", Range::between(0.0, 0.1))) o.mass_cutoff = *cutoff;
   o.local_damping = root.object_or_empty("damping").number_or("local", "1", Range::between(0.0, 0.99), 0.0);
+  if (o.local_damping > 0.0 && o.transfer == TransferName::fmpm)
+    root.fail("damping/local",
+              "does not go with scheme/transfer 'fmpm', whose velocities after the filter are not those "
+              "that the damping opposes; take another transfer, or 0");
 }
 
 void read_sleep(const CaseNode& root, Scene& scene) {
@@ -77,6 +86,8 @@ void read_sleep(const CaseNode& root, Scene& scene) {
   o.speed = node->number("speed", "m/s", Range::non_negative());
   o.calm = node->number_or("calm", "s", Range::positive(), o.calm);
   o.nap = node->number_or("nap", "s", Range::positive(), o.nap);
+  if (o.speed > 0.0 && scene.solver.transfer == TransferName::fmpm)
+    root.fail("sleep", "does not go with scheme/transfer 'fmpm', whose filter needs every particle in every step");
   if (o.speed > 0.0 && scene.solver.transfer == TransferName::apic && scene.solver.local_damping == 0.0)
     root.fail("sleep", "needs scheme/transfer 'aflip' or 'flip': APIC puts momentum and forces on the nodes as one");
 }

@@ -8,7 +8,8 @@ Particles<Dim> solver_particles(const Scene& scene) {
   bool pore = false;
   for (const auto& m : scene.materials) pore = pore || m.pore_pressure != PorePressure::total;
   Particles<Dim> P;
-  P.resize(set.count(), scene.solver.transfer != TransferName::flip, pore);
+  const TransferName transfer = scene.solver.transfer;
+  P.resize(set.count(), transfer == TransferName::apic || transfer == TransferName::aflip, pore);
   constexpr int components = stress_components<Dim>;
   for (std::size_t p = 0; p < set.count(); ++p) {
     for (int d = 0; d < Dim; ++d) {

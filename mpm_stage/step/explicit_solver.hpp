@@ -1,5 +1,5 @@
 // The explicit step, symplectic Euler on the grid (Sulsky, Chen & Schreyer 1994), in the order
-//   nodes:      v = p / m, body forces, damping, walls, ground
+//   nodes:      v = p / m, body forces, damping, walls, ground; with FMPM the filter of mass_filter.hpp
 //   G2P:        velocities, affine velocities, gradients; particles move, and add their volumetric increments to the
 //               nodes' averages (the cure of locking)
 //   sort:       only when some particle may have left its block's margin
@@ -20,6 +20,7 @@
 #include "common/error.hpp"
 #include "mpm_stage/boundary/contact_gap.hpp"
 #include "mpm_stage/boundary/ground_friction.hpp"
+#include "mpm_stage/boundary/held_directions.hpp"
 #include "mpm_stage/boundary/mirror_walls.hpp"
 #include "mpm_stage/boundary/surface_extension.hpp"
 #include "mpm_stage/grid/tiles.hpp"
@@ -28,6 +29,7 @@
 #include "mpm_stage/step/sleeping_blocks.hpp"
 #include "mpm_stage/step/solver.hpp"
 #include "mpm_stage/transfer/grid_to_particles.hpp"
+#include "mpm_stage/transfer/mass_matrix.hpp"
 #include "mpm_stage/transfer/particles_to_grid.hpp"
 #include "mpm_stage/transfer/volumetric_average.hpp"
 
@@ -85,7 +87,7 @@ class ExplicitSolver final : public Solver<Dim> {
         for (std::size_t p = run.begin; p < run.end; ++p)
           fastest = std::max(fastest, wave_speed_[run.material] + std::sqrt(speed_squared(p)));
     fastest_wave_ = fastest;
-    next_dt_ = std::min({options_.courant * h_ / fastest, options_.maximum_step, viscous_limit_, limit});
+    next_dt_ = longest_step(limit);
     particles_to_grid();
   }
 
@@ -100,12 +102,13 @@ class ExplicitSolver final : public Solver<Dim> {
     if (sleep_.active() && std::any_of(inertial.begin(), inertial.end(), [](double a) { return a != 0.0; }))
       sleep_.wake_all();
     update_grid(dt, body, inertial);
+    if constexpr (Transfer == TransferName::fmpm) filter_velocity(dt);
     gather(dt, report);
     if (drift_ > largest_drift || leaving_) {
       sort();
       report.sorted = true;
     }
-    next_dt_ = std::min({options_.courant * h_ / fastest_wave_, options_.maximum_step, viscous_limit_, limit});
+    next_dt_ = longest_step(limit);
     report.next_dt = next_dt_;
     if (averaging_) average(report.sorted);
     update_stresses(dt);
@@ -142,6 +145,7 @@ class ExplicitSolver final : public Solver<Dim> {
   std::size_t grid_bytes() const override {
     return grid_.bytes() +
            (tiles_.capacity() + forces_.capacity() + velocity_.capacity() + change_.capacity()) * sizeof(Vec4) +
+           (term_.capacity() + products_.capacity()) * sizeof(Vec4) +
            averaged_tiles_.capacity() * sizeof(AveragedNode) + averaged_.capacity() * sizeof(NodeMean);
   }
 
@@ -177,7 +181,15 @@ class ExplicitSolver final : public Solver<Dim> {
   }
 
   // Whether the nodes' sums have to be complete before any velocity is made.
-  bool needs_all_sums() const { return mirrors_.any() || extension_.active() || !bodies_.empty(); }
+  bool needs_all_sums() const {
+    return Transfer == TransferName::fmpm || mirrors_.any() || extension_.active() || !bodies_.empty();
+  }
+  // s. The filter of FMPM(k) raises the rate of change of a node's velocity up to k times (mass_filter.hpp).
+  double longest_step(double limit) const {
+    const double raised = Transfer == TransferName::fmpm ? options_.fmpm_order : 1.0;
+    return std::min({options_.courant * h_ / fastest_wave_ / std::sqrt(raised), options_.maximum_step,
+                     viscous_limit_ / raised, limit});
+  }
   // Share of the way to the average that the mean stress goes in a step.
   double relaxation(int material, double dt) const {
     const auto m = static_cast<std::size_t>(material);
@@ -202,6 +214,10 @@ class ExplicitSolver final : public Solver<Dim> {
   void lay_to_rest(std::size_t b, BlockMotion& motion);
   void mind_sides(std::size_t b, BlockMotion& motion);
   void update_grid(double dt, const std::array<double, Dim>& body, const std::array<double, Dim>& inertial);
+  void filter_velocity(double dt);
+  void take_increment(std::size_t a);
+  void find_held(std::size_t a, double dt);
+  void keep_contact(std::size_t a);
   void gather(double dt, StepReport& report);
   void scatter_average(std::size_t b);
   void average(bool sorted);
@@ -239,6 +255,16 @@ class ExplicitSolver final : public Solver<Dim> {
   AlignedVector<NodeMean> averaged_;
   std::vector<Gap> gap_tiles_;
   std::vector<NodeGrip> grip_;  // per active block
+  // FMPM: the latest term of the velocity and the mass matrix times it, per active block; what contact holds.
+  AlignedVector<Vec4> term_, products_;
+  struct HeldNode {
+    std::size_t node;
+    HeldDirections<Dim> held;
+    const NodeContact* contact = nullptr;  // of the ground, null: none
+    double allowed = 0.0;                  // m/s, free approach to it
+  };
+  std::vector<std::vector<HeldNode>> held_nodes_;                     // per active block
+  std::vector<std::pair<std::size_t, std::size_t>> nodes_in_bodies_;  // node, body
   std::vector<double> spread_;
   std::vector<double> smoothed_grip_;              // m/s2, per active block
   std::vector<std::array<int, Dim>> grip_blocks_;  // the active blocks that it belongs to
@@ -258,6 +284,7 @@ class ExplicitSolver final : public Solver<Dim> {
 
 #include "mpm_stage/step/explicit_solver_phases.hpp"
 #include "mpm_stage/step/explicit_solver_upkeep.hpp"
+#include "mpm_stage/step/mass_filter.hpp"
 
 namespace tailrun::mpm {
 
@@ -275,6 +302,8 @@ std::unique_ptr<Solver<Dim>> make_solver_of_shape(const SolverOptions& options, 
       return make.template operator()<true, TransferName::flip>();
     case TransferName::aflip:
       return make.template operator()<true, TransferName::aflip>();
+    case TransferName::fmpm:
+      return make.template operator()<false, TransferName::fmpm>();
     case TransferName::apic:
       break;
   }

@@ -149,11 +149,14 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_ground() {
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::move_bodies(double dt) {
+  nodes_in_bodies_.clear();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const std::array<double, Dim> v = walls_.bodies[b].velocity_at(time_ + 0.5 * dt);
     work_.external += push_nodes<Dim>(grid_, walls_.bodies[b], v, sums_.data(), mass_cutoff_, velocity_.data(),
-                                      bodies_[b], [this](std::size_t k, const std::array<double, Dim>& dv) {
+                                      bodies_[b], [this, b](std::size_t k, const std::array<double, Dim>& dv) {
                                         if constexpr (Split) add_change(k, dv);
+                                        if constexpr (Transfer == TransferName::fmpm)
+                                          nodes_in_bodies_.push_back({k, b});
                                       });
     for (int d = 0; d < Dim; ++d) bodies_[b].displacement[d] += dt * v[d];
   }
@@ -162,7 +165,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::move_bodies(double dt) {
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& report) {
   const auto since = Clock::now();
-  constexpr bool Flip = Transfer != TransferName::apic, Affine = Transfer != TransferName::flip;
+  constexpr bool Flip = Transfer == TransferName::flip || Transfer == TransferName::aflip;
+  constexpr bool Affine = Transfer == TransferName::apic || Transfer == TransferName::aflip;
   const GridToParticles s{dt, h1_, flip_share(dt)};
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t b = 0; b < grid_.occupied(); ++b) {

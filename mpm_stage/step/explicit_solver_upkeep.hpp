@@ -77,6 +77,11 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
     sums_.resize(velocity_.size());
     if (Split) force_sums_.resize(velocity_.size());
   }
+  if (Transfer == TransferName::fmpm) {
+    term_.resize(velocity_.size());
+    products_.resize(velocity_.size());
+    held_nodes_.resize(grid_.active());
+  }
   if (averaging_) {
     averaged_tiles_.resize(tiles_.size());
     averaged_.resize(velocity_.size());

@@ -16,7 +16,7 @@
 namespace tailrun::mpm {
 
 enum class ShapeName { linear, quadratic, cubic, gimp };
-enum class TransferName { apic, flip, aflip };
+enum class TransferName { apic, flip, aflip, fmpm };
 
 // Blocks at rest are left out of the step (sleeping_blocks.hpp).
 struct SleepOptions {
@@ -32,6 +32,7 @@ struct SolverOptions {
   // 1, share of APIC in the AFLIP blend over the time that the fastest wave takes through a cell: what the transfer
   // takes from motion under the grid's resolution then does not depend on the time step.
   double transfer_damping = 0.3;
+  int fmpm_order = 4;  // terms of the full mass matrix's inverse (mass_filter.hpp); 1 is PIC
   bool volumetric_average = true;
   double mean_stress_relaxation = 0.5;  // 1, of the mean stress towards its average, per h / c
   double courant = 0.5;                 // 1, dt = courant h / max(c + |v|)

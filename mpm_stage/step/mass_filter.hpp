@@ -1,0 +1,145 @@
+// FMPM(k): the nodes' velocities by an approximate inverse of the full mass matrix M instead of its row sums m
+// (Hammerquist & Nairn 2017; Nairn & Hammerquist 2021). With v(1) = p / m
+//   v(k) = sum_{l=0}^{k-1} (I - m^-1 M)^l v(1),
+// of which k - 1 terms are made here. Particles take v(k) and its gradient and move with it.
+//
+// Nodes that walls, ground or bodies hold: v(1) is what contact has made of it, and each further term loses its part
+// along the held directions (held_directions.hpp), so the series inverts the mass matrix of the free directions.
+// Mirrors and continued surface nodes treat M v like any other momentum.
+//
+// The time step: with mu in [0, 1] an eigenvalue of m^-1 M, the filter multiplies accelerations by
+// (1 - (1 - mu)^k) / mu <= k, and all its factors are symmetric in the product with m. So the largest eigenvalue of the
+// step grows at most k times, and steps of 1 / sqrt(k) of those that are stable for k = 1 are stable (explicit
+// viscosity: 1 / k). Modes that particles hardly feel, such as a node's with a particle at the rim of its reach, come
+// close to k.
+#pragma once
+
+#include "mpm_stage/step/explicit_solver.hpp"
+
+namespace tailrun::mpm {
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::filter_velocity(double dt) {
+  if (options_.fmpm_order < 2) return;
+  const auto since = Clock::now();
+  const auto complete = [this](AlignedVector<Vec4>& velocity) {
+    if (mirrors_.any()) mirrors_.reflect(velocity.data());
+    if (!extension_.active()) return;
+    extension_.extend(velocity.data());
+    if (mirrors_.any()) mirrors_.reflect(velocity.data());
+  };
+#pragma omp parallel for schedule(dynamic, 4)
+  for (std::size_t a = 0; a < grid_.active(); ++a) {
+    find_held(a, dt);
+    grid_sums_[a] = {};
+    std::copy_n(velocity_.data() + a * block_nodes, block_nodes, term_.data() + a * block_nodes);
+  }
+  for (int l = 1; l < options_.fmpm_order; ++l) {
+#pragma omp parallel for schedule(dynamic, 4)
+    for (std::size_t b = 0; b < grid_.occupied(); ++b) {
+      Vec4 velocity[tile_nodes];
+      load_tile<Dim, Shape>(grid_, b, term_.data(), velocity);
+      // The tiles are free between the nodes' sums and the next P2G.
+      Vec4* momentum = tiles_.data() + b * tile_nodes;
+      std::fill(momentum, momentum + tile_nodes, Vec4{});
+      apply_mass_matrix<Shape>(h1_, corner(b), P_, grid_.first_particle(b), grid_.last_particle(b), velocity, momentum);
+    }
+#pragma omp parallel for schedule(dynamic, 4)
+    for (std::size_t a = 0; a < grid_.active(); ++a)
+      gather_tiles<Dim, Shape>(grid_, a, tiles_.data(), products_.data() + a * block_nodes);
+    if (mirrors_.any()) mirrors_.fold(products_.data());
+    if (extension_.active()) extension_.fold_force(sums_.data(), products_.data());
+#pragma omp parallel for schedule(dynamic, 4)
+    for (std::size_t a = 0; a < grid_.active(); ++a) take_increment(a);
+    for (const auto& [k, b] : nodes_in_bodies_) {
+      const std::array<double, Dim> v = walls_.bodies[b].velocity_at(time_ + 0.5 * dt);
+      for (int d = 0; d < Dim; ++d) {
+        bodies_[b].impulse[d] -= products_[k][1 + d];
+        work_.external += products_[k][1 + d] * v[d];
+      }
+      term_[k] = Vec4{};
+    }
+    complete(term_);
+#pragma omp parallel for schedule(static)
+    for (std::size_t k = 0; k < velocity_.size(); ++k) velocity_[k] += term_[k];
+  }
+  if (ground_.any()) {
+#pragma omp parallel for schedule(dynamic, 4)
+    for (std::size_t a = 0; a < grid_.active(); ++a) keep_contact(a);
+    for (const auto& [k, b] : nodes_in_bodies_)
+      velocity_[k] = node_velocity<Dim>(walls_.bodies[b].velocity_at(time_ + 0.5 * dt).data());
+    complete(velocity_);
+  }
+  for (const auto& s : grid_sums_)
+    for (int d = 0; d < Dim; ++d) impulse_[d] += s.impulse[d];
+  add_time(seconds_.grid, since);
+}
+
+// The next term of block a's nodes, (I - m^-1 M) times the one before.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::take_increment(std::size_t a) {
+  for (std::size_t k = a * block_nodes; k < (a + 1) * block_nodes; ++k) {
+    const double m = sums_[k][0];
+    term_[k] = m > mass_cutoff_ ? term_[k] - as_velocity<Dim>(products_[k]) * splat(1.0 / m) : Vec4{};
+  }
+  for (const HeldNode& node : held_nodes_[a]) {
+    if (!node.held.any()) continue;
+    const double m = sums_[node.node][0];
+    std::array<double, Dim> v;
+    for (int d = 0; d < Dim; ++d) v[d] = term_[node.node][d];
+    node.held.release(v);
+    for (int d = 0; d < Dim; ++d) {
+      grid_sums_[a].impulse[d] += m * (v[d] - term_[node.node][d]);
+      term_[node.node][d] = v[d];
+    }
+  }
+}
+
+// Which nodes of block a touch ground or frictional walls, and what holds them there.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::find_held(std::size_t a, double dt) {
+  constexpr int B = Block<Dim>::cells;
+  auto& found = held_nodes_[a];
+  found.clear();
+  const NodeContact* contact = ground_.of_block(a);
+  if (!contact && !wall_nodes_.any) return;
+  const double slack = 1e-12 * fastest_wave_;
+  Gap gap[block_nodes];
+  if (contact) gather_tiles<Dim, Shape>(grid_, a, gap_tiles_.data(), gap);
+  for (int n = 0; n < block_nodes; ++n) {
+    const std::size_t k = a * block_nodes + static_cast<std::size_t>(n);
+    if (sums_[k][0] <= mass_cutoff_) continue;
+    std::array<double, Dim> v;
+    for (int d = 0; d < Dim; ++d) v[d] = velocity_[k][d];
+    HeldNode node{k, {}, nullptr, 0.0};
+    if (contact && contact[n].count > 0) {
+      node.contact = contact + n;
+      node.allowed = std::max(0.0, gap[n].value) / dt;
+      hold_by_ground<Dim>(contact[n], grip_[k], node.allowed, slack, v, node.held);
+    }
+    if (wall_nodes_.any) {
+      std::array<int, Dim> index;
+      for (int d = 0, r = n; d < Dim; ++d, r /= B) index[d] = grid_.active_index(a)[d] * B + r % B;
+      hold_by_walls<Dim>(wall_nodes_, index, slack, v, node.held);
+    }
+    if (node.contact || node.held.any()) found.push_back(node);
+  }
+}
+
+// Nodes that were leaving the ground before the filter must not be pushed into it by the filter.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::keep_contact(std::size_t a) {
+  for (const HeldNode& node : held_nodes_[a]) {
+    if (!node.contact) continue;
+    const double m = sums_[node.node][0];
+    std::array<double, Dim> v;
+    for (int d = 0; d < Dim; ++d) v[d] = velocity_[node.node][d];
+    stop_approach<Dim>(*node.contact, m, node.allowed, v);
+    for (int d = 0; d < Dim; ++d) {
+      grid_sums_[a].impulse[d] += m * (v[d] - velocity_[node.node][d]);
+      velocity_[node.node][d] = v[d];
+    }
+  }
+}
+
+}  // namespace tailrun::mpm
