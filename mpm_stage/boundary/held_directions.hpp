@@ -76,6 +76,24 @@ void hold_by_ground(const NodeContact& contact, const NodeGrip& grip, double all
   }
 }
 
+// Stops a node that slid with `before` along the ground where its velocity `v` goes back: friction follows from `before`
+// and must not turn it round.
+template <int Dim>
+void stop_return(const NodeGrip& grip, const std::array<double, Dim>& before, std::array<double, Dim>& v) {
+  if (grip.mass <= 0.0 || grip.capacity <= 0.0) return;
+  const auto along = [&grip](std::array<double, Dim> u) {
+    const double un = u[0] * grip.normal[0] + u[1] * grip.normal[1];
+    u[0] -= un * grip.normal[0];
+    u[1] -= un * grip.normal[1];
+    return u;
+  };
+  const auto slid = along(before), slides = along(v);
+  double together = 0.0;
+  for (int d = 0; d < Dim; ++d) together += slid[d] * slides[d];
+  if (together >= 0.0) return;
+  for (int d = 0; d < Dim; ++d) v[d] -= slides[d];
+}
+
 // Frictional walls of the grid.
 template <int Dim>
 void hold_by_walls(const WallNodes<Dim>& walls, const std::array<int, Dim>& node, double slack,

@@ -260,6 +260,7 @@ class ExplicitSolver final : public Solver<Dim> {
   struct HeldNode {
     std::size_t node;
     HeldDirections<Dim> held;
+    std::array<double, Dim> before;        // m/s, velocity before the filter
     const NodeContact* contact = nullptr;  // of the ground, null: none
     double allowed = 0.0;                  // m/s, free approach to it
   };

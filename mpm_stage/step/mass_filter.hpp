@@ -111,7 +111,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::find_held(std::size_t a, doubl
     if (sums_[k][0] <= mass_cutoff_) continue;
     std::array<double, Dim> v;
     for (int d = 0; d < Dim; ++d) v[d] = velocity_[k][d];
-    HeldNode node{k, {}, nullptr, 0.0};
+    HeldNode node{k, {}, v, nullptr, 0.0};
     if (contact && contact[n].count > 0) {
       node.contact = contact + n;
       node.allowed = std::max(0.0, gap[n].value) / dt;
@@ -126,7 +126,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::find_held(std::size_t a, doubl
   }
 }
 
-// Nodes that were leaving the ground before the filter must not be pushed into it by the filter.
+// The filter must neither push nodes that were leaving the ground into it nor make those that slid go back.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::keep_contact(std::size_t a) {
   for (const HeldNode& node : held_nodes_[a]) {
@@ -134,6 +134,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::keep_contact(std::size_t a) {
     const double m = sums_[node.node][0];
     std::array<double, Dim> v;
     for (int d = 0; d < Dim; ++d) v[d] = velocity_[node.node][d];
+    stop_return<Dim>(grip_[node.node], node.before, v);
     stop_approach<Dim>(*node.contact, m, node.allowed, v);
     for (int d = 0; d < Dim; ++d) {
       grid_sums_[a].impulse[d] += m * (v[d] - velocity_[node.node][d]);
