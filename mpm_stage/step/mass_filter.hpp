@@ -54,8 +54,9 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::filter_velocity(double dt) {
     for (const auto& [k, b] : nodes_in_bodies_) {
       const std::array<double, Dim> v = walls_.bodies[b].velocity_at(time_ + 0.5 * dt);
       for (int d = 0; d < Dim; ++d) {
-        bodies_[b].impulse[d] -= products_[k][1 + d];
-        work_.external += products_[k][1 + d] * v[d];
+        const double taken = -sums_[k][0] * term_[k][d];
+        bodies_[b].impulse[d] -= taken;
+        work_.external += taken * v[d];
       }
       term_[k] = Vec4{};
     }
@@ -70,8 +71,10 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::filter_velocity(double dt) {
       velocity_[k] = node_velocity<Dim>(walls_.bodies[b].velocity_at(time_ + 0.5 * dt).data());
     complete(velocity_);
   }
-  for (const auto& s : grid_sums_)
+  for (const auto& s : grid_sums_) {
+    work_.friction += s.friction;
     for (int d = 0; d < Dim; ++d) impulse_[d] += s.impulse[d];
+  }
   add_time(seconds_.grid, since);
 }
 
@@ -136,6 +139,11 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::keep_contact(std::size_t a) {
     for (int d = 0; d < Dim; ++d) v[d] = velocity_[node.node][d];
     stop_return<Dim>(grip_[node.node], node.before, v);
     stop_approach<Dim>(*node.contact, m, node.allowed, v);
+    // Friction has been booked with the velocity before the filter; the one after it displaces.
+    if (const NodeGrip& grip = grip_[node.node]; grip.mass > 0.0) {
+      const double impulse = pooled_impulse(ground_, grip_, spread_, a, static_cast<int>(node.node % block_nodes));
+      grid_sums_[a].friction += impulse * friction_path<Dim>(grip, node.before, v);
+    }
     for (int d = 0; d < Dim; ++d) {
       grid_sums_[a].impulse[d] += m * (v[d] - velocity_[node.node][d]);
       velocity_[node.node][d] = v[d];

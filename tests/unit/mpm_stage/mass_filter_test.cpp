@@ -92,6 +92,7 @@ TEST_CASE("the filter leaves uniform motion alone, with every shape function, in
   for (const ShapeName shape : {ShapeName::linear, ShapeName::quadratic, ShapeName::cubic, ShapeName::gimp}) {
     CAPTURE(static_cast<int>(shape));
     SolverOptions o = fmpm(6);
+    o.mass_cutoff = 1e-18;  // nodes under it stand still, and hold what touches them by their mass
     o.shape = shape;
     Particles<2> plane = block<2>({16, 12, 1}, 0.2);
     Particles<3> body = block<3>({6, 6, 6}, 0.2);
@@ -195,16 +196,17 @@ TEST_CASE("the same bits for one thread and for two, with ground and walls") {
 }
 
 TEST_CASE("energy of a body that shakes and flies over cells does not grow at courant 0.9, whatever the order") {
-  for (const int order : {2, 4, 6}) {
+  for (const int order : {1, 2, 4, 6}) {
     CAPTURE(order);
-    Particles<2> P = block<2>({32, 16, 1}, 0.1);
+    Particles<2> P = block<2>({16, 8, 1}, 0.1);
     shake(P, 0.2);
     for (double& v : P.velocity[0]) v += 3.0;
     SolverOptions o = fmpm(order);
     o.courant = 0.9;
+    o.surface_share = 0.05;  // as in scenes of elastic bodies
     auto s = started<2>(o, std::move(P));
     const double start = energy(*s);
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < 2000; ++i) {
       s->step({0, 0}, {0, 0}, 1e30);
       if (i % 100 == 0) CHECK(energy(*s) < start * (1.0 + 1e-6));
     }
@@ -216,7 +218,7 @@ TEST_CASE("energy of a body that bounces on rough ground does not grow at couran
   ground.add_line({{{-10.0, -0.05}}, {{20.0, -0.05}}}, {0.5}, false);
   for (const int order : {2, 4, 6}) {
     CAPTURE(order);
-    Particles<2> P = block<2>({32, 16, 1}, 0.1);
+    Particles<2> P = block<2>({16, 8, 1}, 0.1);
     for (double& v : P.velocity[0]) v = 0.5;
     for (double& v : P.velocity[1]) v = -1.0;
     SolverOptions o = fmpm(order);
@@ -226,7 +228,7 @@ TEST_CASE("energy of a body that bounces on rough ground does not grow at couran
     const double momentum_before = momentum(s->particles(), 1);
     double time = 0.0, mass = 0.0;
     for (const double m : s->particles().mass) mass += m;
-    for (int i = 0; i < 2000; ++i) {
+    for (int i = 0; i < 1000; ++i) {
       time += s->step({0, -9.81}, {0, 0}, 1e30).dt;
       if (i % 50 == 0) CHECK(energy(*s, 9.81) < start * (1.0 + 1e-6));
     }
