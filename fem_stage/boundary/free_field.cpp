@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "common/element_mean.hpp"
 #include "common/error.hpp"
 
 namespace tailrun::fem {
@@ -34,12 +35,8 @@ std::size_t element_behind(const Mesh& mesh, std::int64_t a, std::int64_t b) {
 }
 
 double mean_change_of_pressure(const Model& model, const State& state, std::size_t e) {
-  double now = 0.0, at_rest = 0.0;
-  for (std::size_t a = 0; a < 4; ++a) {
-    const auto node = static_cast<std::size_t>(model.mesh.quads[4 * e + a]);
-    now += 0.25 * state.pressure[node];
-    at_rest += 0.25 * state.initial_pressure[node];
-  }
+  const double now = element_mean(model.mesh.quads, state.pressure, e);
+  const double at_rest = element_mean(model.mesh.quads, state.initial_pressure, e);
   return model.pressure_in_stress(e, now) - model.pressure_in_stress(e, at_rest);
 }
 

@@ -1,4 +1,5 @@
 #include "fem_stage/boundary/soft_fluid.hpp"
+#include "common/element_mean.hpp"
 
 #include <algorithm>
 #include <array>
@@ -48,9 +49,7 @@ void soft_fluid_mobility(const Model& model, std::span<const double> pressure, s
   if (!model.options->above_phreatic_line.soft_fluid) return;
   for (std::size_t e = 0; e < model.count(); ++e) {
     if (!model.soft_fluid[e]) continue;
-    double mean = 0.0;
-    for (std::size_t a = 0; a < 4; ++a) mean += 0.25 * pressure[static_cast<std::size_t>(model.mesh.quads[4 * e + a])];
-    mobility[e] = mean > 0.0 ? 1.0 : suction_mobility;
+    mobility[e] = element_mean(model.mesh.quads, pressure, e) > 0.0 ? 1.0 : suction_mobility;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/element_mean.hpp"
 #include "common/error.hpp"
 #include "common/file_format.hpp"
 
@@ -15,20 +16,14 @@ constexpr double saturated_above = 300.0;         // Pa of geostatic pore pressu
 constexpr double smallest_vertical_stress = 5e3;  // Pa, in the denominator of r_u
 const std::string restart = "/tailrun/fem_restart";
 
-double element_mean(const Model& model, const std::vector<double>& nodal, std::size_t e) {
-  double sum = 0.0;
-  for (std::size_t a = 0; a < 4; ++a) sum += 0.25 * nodal[static_cast<std::size_t>(model.mesh.quads[4 * e + a])];
-  return sum;
-}
-
 }  // namespace
 
 std::vector<double> excess_pore_pressure_ratio(const Model& model, const State& state) {
   std::vector<double> ratio(model.count(), 0.0);
   for (std::size_t e = 0; e < model.count(); ++e) {
-    const double initial = element_mean(model, state.initial_pressure, e);
+    const double initial = element_mean(model.mesh.quads, state.initial_pressure, e);
     if (initial < saturated_above) continue;
-    const double excess = element_mean(model, state.pressure, e) - initial;
+    const double excess = element_mean(model.mesh.quads, state.pressure, e) - initial;
     ratio[e] = excess / std::max(-state.initial_stress[4 * e + 1], smallest_vertical_stress);
   }
   return ratio;
@@ -93,9 +88,9 @@ Snapshot make_snapshot(const Model& model, const State& state, double rigid_velo
   out.depth.resize(count);
   out.effective_stress_ratio.resize(count);
   for (std::size_t e = 0; e < count; ++e) {
-    const double pressure = element_mean(model, state.pressure, e);
+    const double pressure = element_mean(model.mesh.quads, state.pressure, e);
     for (std::size_t i = 0; i < 3; ++i) out.total_stress[4 * e + i] -= model.pressure_in_stress(e, pressure);
-    out.initial_pore_pressure[e] = element_mean(model, state.initial_pressure, e);
+    out.initial_pore_pressure[e] = element_mean(model.mesh.quads, state.initial_pressure, e);
     const double vertical = -state.initial_stress[4 * e + 1];
     out.initial_vertical_effective_stress[e] = vertical;
     out.effective_stress_ratio[e] = 1.0 + state.stress[4 * e + 1] / std::max(vertical, smallest_vertical_stress);

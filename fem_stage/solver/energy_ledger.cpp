@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/element_mean.hpp"
 #include "fem_stage/solver/averaged_mass.hpp"
 
 namespace tailrun::fem {
@@ -46,12 +47,8 @@ void EnergyRecorder::after(const Model& model, const State& state, const Element
     const double volume = forces.elements().volume[e], *d = &strain[3 * e], *s0 = &stress_[4 * e],
                  *s1 = &state.stress[4 * e];
     skeleton += 0.5 * volume * ((s0[0] + s1[0]) * d[0] + (s0[1] + s1[1]) * d[1] + (s0[3] + s1[3]) * d[2]);
-    double before = 0.0, now = 0.0;
-    for (std::size_t a = 0; a < 4; ++a) {
-      const auto node = static_cast<std::size_t>(model.mesh.quads[4 * e + a]);
-      before += 0.25 * pressure_[node];
-      now += 0.25 * state.pressure[node];
-    }
+    const double before = element_mean(model.mesh.quads, pressure_, e);
+    const double now = element_mean(model.mesh.quads, state.pressure, e);
     const double p = 0.5 * (model.pressure_in_stress(e, before) + model.pressure_in_stress(e, now));
     fluid -= volume * p * (d[0] + d[1]);
     damping += forces.damping_power(e, state.velocity);

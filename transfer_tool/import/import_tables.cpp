@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "common/element_mean.hpp"
 #include "common/error.hpp"
 #include "transfer_tool/import/csv_table.hpp"
 #include "transfer_tool/sample/mesh_geometry.hpp"
@@ -115,12 +116,6 @@ std::vector<double> read_stress(const CsvTable& table, const std::vector<std::si
   return stress;
 }
 
-double mean_of_nodes(const Snapshot& snapshot, std::size_t element, const std::vector<double>& nodal) {
-  double sum = 0.0;
-  for (std::size_t a = 0; a < 4; ++a) sum += nodal[static_cast<std::size_t>(snapshot.quads[4 * element + a])];
-  return 0.25 * sum;
-}
-
 void derive_element_fields(Snapshot& snapshot, const std::vector<double>& initial_nodal_pressure) {
   const GroundSurface surface(snapshot);
   for (std::size_t e = 0; e < snapshot.elements(); ++e) {
@@ -130,8 +125,8 @@ void derive_element_fields(Snapshot& snapshot, const std::vector<double>& initia
       x += 0.25 * corner[0];
       y += 0.25 * corner[1];
     }
-    const double pressure = mean_of_nodes(snapshot, e, snapshot.pore_pressure);
-    const double initial_pressure = mean_of_nodes(snapshot, e, initial_nodal_pressure);
+    const double pressure = element_mean(snapshot.quads, snapshot.pore_pressure, e);
+    const double initial_pressure = element_mean(snapshot.quads, initial_nodal_pressure, e);
     const double initial_vertical = -snapshot.initial_effective_stress[4 * e + 1];
     const double vertical = -snapshot.effective_stress[4 * e + 1];
     for (std::size_t k = 0; k < 4; ++k)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/element_mean.hpp"
 #include "common/error.hpp"
 #include "transfer_tool/map/recovery.hpp"
 #include "transfer_tool/sample/mesh_geometry.hpp"
@@ -34,6 +35,21 @@ std::vector<double> interpolated(const Snapshot& snapshot, const SamplePoints& p
   return values;
 }
 
+namespace {
+
+// 1 for every element whose pores are under suction that its total stress does not feel (soil above the phreatic line).
+std::vector<char> feels_no_suction(const Snapshot& snapshot) {
+  std::vector<char> out(snapshot.elements(), 0);
+  for (std::size_t e = 0; e < snapshot.elements(); ++e) {
+    const double mean = element_mean(snapshot.quads, snapshot.pore_pressure, e);
+    const double felt = snapshot.effective_stress[4 * e + 1] - snapshot.total_stress[4 * e + 1];
+    out[e] = mean < 0.0 && felt > 0.5 * mean;
+  }
+  return out;
+}
+
+}  // namespace
+
 PointState map_state(const Snapshot& snapshot, const SamplePoints& points, const MapOptions& options) {
   PointState state;
   const std::size_t n = points.count();
@@ -50,6 +66,9 @@ PointState map_state(const Snapshot& snapshot, const SamplePoints& points, const
   }
   state.effective_stress = recovered(snapshot, points, snapshot.effective_stress, 4, options.stress);
   state.pore_pressure = interpolated(snapshot, points, snapshot.pore_pressure, 1, 0);
+  const auto is_free_of_suction = feels_no_suction(snapshot);
+  for (std::size_t p = 0; p < n; ++p)
+    if (is_free_of_suction[static_cast<std::size_t>(points.element[p])]) state.pore_pressure[p] = 0.0;
   state.initial_vertical_effective_stress =
       recovered(snapshot, points, snapshot.initial_vertical_effective_stress, 1, options.initial_stress);
   state.excess_pore_pressure_ratio = recovered(
@@ -79,12 +98,8 @@ void take_initial_state(Snapshot& snapshot, const Snapshot& geostatic) {
   for (std::size_t node = 0; node < snapshot.nodes(); ++node)
     snapshot.excess_pore_pressure[node] = snapshot.pore_pressure[node] - geostatic.pore_pressure[node];
   for (std::size_t e = 0; e < snapshot.elements(); ++e) {
-    double excess = 0.0, before = 0.0;
-    for (std::size_t a = 0; a < 4; ++a) {
-      const auto node = static_cast<std::size_t>(snapshot.quads[4 * e + a]);
-      excess += 0.25 * snapshot.excess_pore_pressure[node];
-      before += 0.25 * geostatic.pore_pressure[node];
-    }
+    const double excess = element_mean(snapshot.quads, snapshot.excess_pore_pressure, e);
+    const double before = element_mean(snapshot.quads, geostatic.pore_pressure, e);
     const double vertical = -geostatic.effective_stress[4 * e + 1];
     const bool is_dry = snapshot.excess_pore_pressure_ratio[e] == 0.0;
     snapshot.initial_pore_pressure[e] = before;

@@ -47,6 +47,8 @@ std::vector<double> recovered(const Snapshot& snapshot, const SamplePoints& poin
 std::vector<double> interpolated(const Snapshot& snapshot, const SamplePoints& points, const std::vector<double>& field,
                                  std::size_t columns, std::size_t k);
 
+// Pore pressure is the nodes' field, but 0 in elements whose total stress feels no suction: the points' total stress is
+// then the one that held the elements in balance.
 PointState map_state(const Snapshot& snapshot, const SamplePoints& points, const MapOptions& options);
 
 // Puts the geostatic stress and pore pressure of another snapshot of the same mesh in place of this one's own record

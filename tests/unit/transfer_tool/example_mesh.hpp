@@ -9,6 +9,7 @@
 #include <functional>
 #include <string>
 
+#include "common/element_mean.hpp"
 #include "common/snapshot.hpp"
 #include "transfer_tool/sample/mesh_geometry.hpp"
 #include "transfer_tool/sample/sample.hpp"
@@ -69,6 +70,14 @@ inline void set_nodal(const Snapshot& mesh, std::vector<double>& field, std::siz
                       const std::function<double(double, double)>& f) {
   for (std::size_t node = 0; node < mesh.nodes(); ++node)
     field[columns * node + k] = f(mesh.position[2 * node], mesh.position[2 * node + 1]);
+}
+
+// Total stress from effective stress and the nodes' mean pore pressure.
+inline void set_total_stress(Snapshot& mesh) {
+  mesh.total_stress = mesh.effective_stress;
+  for (std::size_t e = 0; e < mesh.elements(); ++e)
+    for (std::size_t k = 0; k < 3; ++k)
+      mesh.total_stress[4 * e + k] -= tailrun::element_mean(mesh.quads, mesh.pore_pressure, e);
 }
 
 // Displacements and velocities that vary over every node, so that nothing agrees by accident.

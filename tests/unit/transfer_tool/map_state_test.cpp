@@ -38,6 +38,7 @@ TEST_CASE("a nodal field that is linear in x reaches the points exactly") {
   auto mesh = example::rectangle(5, 4);
   example::set_nodal(mesh, mesh.pore_pressure, 1, 0, linear);
   example::set_nodal(mesh, mesh.velocity, 2, 0, linear);
+  example::set_total_stress(mesh);
   for (const Layout layout : {Layout::gauss, Layout::uniform})
     for (int count = 1; count <= 5; ++count) {
       const auto points = example::sample_all(mesh, layout, count);
@@ -50,6 +51,22 @@ TEST_CASE("a nodal field that is linear in x reaches the points exactly") {
       CAPTURE(count);
       CHECK(error < 1e-12 * 1.4e5);
     }
+}
+
+TEST_CASE("suction that the total stress does not feel stays behind") {
+  auto mesh = example::rectangle(2, 4);
+  example::set_nodal(mesh, mesh.pore_pressure, 1, 0, [](double, double y) { return 1e4 * (2.0 - y); });
+  example::set_total_stress(mesh);
+  const std::size_t dry = mesh.elements() - 1, wet = dry - 1;  // side by side in the top row, at a mean of -15 kPa
+  for (std::size_t k = 0; k < 3; ++k) mesh.total_stress[4 * dry + k] = mesh.effective_stress[4 * dry + k];
+  const auto points = example::sample_all(mesh, Layout::gauss, 2);
+  const auto state = map_state(mesh, points, {});
+  for (std::size_t p = 0; p < points.count(); ++p) {
+    const double exact = 1e4 * (2.0 - points.initial_position[2 * p + 1]);
+    const auto element = static_cast<std::size_t>(points.element[p]);
+    CHECK(state.pore_pressure[p] == doctest::Approx(element == dry ? 0.0 : exact));
+    if (element == wet) CHECK(state.pore_pressure[p] < 0.0);
+  }
 }
 
 TEST_CASE("the base's velocity is taken off, or kept on request") {
