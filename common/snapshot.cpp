@@ -55,16 +55,7 @@ const std::vector<Field>& fields() {
   return table;
 }
 
-// (n, 2) to (n, 3) with a zero third component, and back.
-std::vector<double> with_third(const std::vector<double>& plane) {
-  std::vector<double> space(plane.size() / 2 * 3, 0.0);
-  for (std::size_t i = 0; i < plane.size() / 2; ++i) {
-    space[3 * i] = plane[2 * i];
-    space[3 * i + 1] = plane[2 * i + 1];
-  }
-  return space;
-}
-
+// (n, 3) to (n, 2).
 std::vector<double> without_third(const std::vector<double>& space) {
   std::vector<double> plane(space.size() / 3 * 2);
   for (std::size_t i = 0; i < space.size() / 3; ++i) {

@@ -32,4 +32,13 @@ void write_unstructured_grid(Hdf5Writer& file, std::span<const double> points,
   file.group("/VTKHDF/CellData");
 }
 
+std::vector<double> with_third(std::span<const double> plane) {
+  std::vector<double> space(plane.size() / 2 * 3, 0.0);
+  for (std::size_t i = 0; i < plane.size() / 2; ++i) {
+    space[3 * i] = plane[2 * i];
+    space[3 * i + 1] = plane[2 * i + 1];
+  }
+  return space;
+}
+
 }  // namespace tailrun

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "common/hdf5_file.hpp"
 
@@ -18,5 +19,8 @@ constexpr std::uint8_t vtk_quad = 9;
 void write_unstructured_grid(Hdf5Writer& file, std::span<const double> points,
                              std::span<const std::int64_t> connectivity, std::size_t nodes_per_cell,
                              std::uint8_t cell_type);
+
+// (n, 2) to (n, 3) with a zero third component: VTK's vectors have three.
+std::vector<double> with_third(std::span<const double> plane);
 
 }  // namespace tailrun

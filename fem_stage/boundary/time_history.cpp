@@ -14,34 +14,27 @@
 namespace tailrun::fem {
 
 TimeHistory TimeHistory::ramp(double start, double duration) {
-  TimeHistory out;
-  out.kind_ = Kind::ramp;
-  out.start_ = start;
+  TimeHistory out(Kind::ramp, start);
   out.duration_ = duration;
   return out;
 }
 
 TimeHistory TimeHistory::ricker(double frequency, double delay) {
-  TimeHistory out;
-  out.kind_ = Kind::ricker;
+  TimeHistory out(Kind::ricker, delay);
   out.frequency_ = frequency;
-  out.start_ = delay;
   return out;
 }
 
 TimeHistory TimeHistory::sine(double frequency, double start) {
-  TimeHistory out;
-  out.kind_ = Kind::sine;
+  TimeHistory out(Kind::sine, start);
   out.frequency_ = frequency;
-  out.start_ = start;
   return out;
 }
 
 TimeHistory TimeHistory::table(const std::filesystem::path& path) {
   std::ifstream stream(path);
   if (!stream) throw InputError(fmt::format("{}: no such file, or it cannot be read", path.string()));
-  TimeHistory out;
-  out.kind_ = Kind::table;
+  TimeHistory out(Kind::table, 0.0);
   int row = 0;
   for (std::string line; std::getline(stream, line);) {
     ++row;

@@ -26,6 +26,7 @@ class TimeHistory {
 
  private:
   enum class Kind { constant, ramp, ricker, sine, table };
+  TimeHistory(Kind kind, double start) : kind_(kind), start_(start) {}
   Kind kind_ = Kind::constant;
   double start_ = 0.0, duration_ = 0.0, frequency_ = 0.0;
   std::vector<double> time_, factor_;

@@ -41,6 +41,27 @@ struct SspQuadUp {
 SspQuadUp build_sspquadup(const Mesh& mesh, std::span<const double> displacement, std::span<const double> thickness,
                           HourglassShape shape, int pressure_points);
 
+// What the element's one point sees of a nodal vector field: its gradient's symmetric part (xy doubled) and the
+// hourglass modes. `field` is (N, 2); a displacement gives strains, a velocity their rates.
+struct CentreGradient {
+  double xx = 0.0, yy = 0.0, xy = 0.0;
+  double hourglass_x = 0.0, hourglass_y = 0.0;
+};
+inline CentreGradient centre_gradient(const SspQuadUp& elements, const std::int64_t* quads,
+                                      std::span<const double> field, std::size_t e) {
+  CentreGradient out;
+  for (std::size_t i = 4 * e; i < 4 * e + 4; ++i) {
+    const auto node = static_cast<std::size_t>(quads[i]);
+    const double x = field[2 * node], y = field[2 * node + 1], nx = elements.dndx[i], ny = elements.dndy[i];
+    out.xx += nx * x;
+    out.yy += ny * y;
+    out.xy += ny * x + nx * y;
+    out.hourglass_x += elements.gamma[i] * x;
+    out.hourglass_y += elements.gamma[i] * y;
+  }
+  return out;
+}
+
 // Index of (a, b) in a lower triangle stored row by row.
 constexpr int lower(int a, int b) {
   return a >= b ? a * (a + 1) / 2 + b : b * (b + 1) / 2 + a;

@@ -32,15 +32,8 @@ std::vector<double> excess_pore_pressure_ratio(const Model& model, const State& 
 std::vector<double> shear_strain(const Model& model, const State& state) {
   std::vector<double> strain(model.count());
   for (std::size_t e = 0; e < model.count(); ++e) {
-    double exx = 0.0, eyy = 0.0, gxy = 0.0;
-    for (std::size_t a = 0; a < 4; ++a) {
-      const auto node = static_cast<std::size_t>(model.mesh.quads[4 * e + a]);
-      const double ux = state.displacement[2 * node], uy = state.displacement[2 * node + 1];
-      exx += model.elements.dndx[4 * e + a] * ux;
-      eyy += model.elements.dndy[4 * e + a] * uy;
-      gxy += model.elements.dndy[4 * e + a] * ux + model.elements.dndx[4 * e + a] * uy;
-    }
-    strain[e] = std::hypot(exx - eyy, gxy);
+    const CentreGradient now = centre_gradient(model.elements, model.mesh.quads.data(), state.displacement, e);
+    strain[e] = std::hypot(now.xx - now.yy, now.xy);
   }
   return strain;
 }

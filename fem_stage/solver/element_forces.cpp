@@ -52,17 +52,7 @@ UpdateReport ElementForces::evaluate(MaterialPoints& points, std::span<const dou
   const auto* quads = model_.mesh.quads.data();
 #pragma omp parallel for schedule(static)
   for (std::size_t e = 0; e < count; ++e) {
-    double exx = 0.0, eyy = 0.0, gxy = 0.0, qx = 0.0, qy = 0.0;
-    for (std::size_t a = 0; a < 4; ++a) {
-      const auto node = static_cast<std::size_t>(quads[4 * e + a]);
-      const double ux = increment[2 * node], uy = increment[2 * node + 1], nx = el.dndx[4 * e + a],
-                   ny = el.dndy[4 * e + a];
-      exx += nx * ux;
-      eyy += ny * uy;
-      gxy += ny * ux + nx * uy;
-      qx += el.gamma[4 * e + a] * ux;
-      qy += el.gamma[4 * e + a] * uy;
-    }
+    const auto [exx, eyy, gxy, qx, qy] = centre_gradient(el, quads, increment, e);
     strain_[3 * e] = exx;
     strain_[3 * e + 1] = eyy;
     strain_[3 * e + 2] = gxy;
@@ -98,17 +88,10 @@ UpdateReport ElementForces::evaluate(MaterialPoints& points, std::span<const dou
     global_stress_[4 * e + 2] = stress_[4 * e + 2];
     global_stress_[4 * e + 3] = sxy;
 
-    double vxx = 0.0, vyy = 0.0, vxy = 0.0, qx = 0.0, qy = 0.0, mean_pressure = 0.0;
-    double p[4], rate[4];
+    const auto [vxx, vyy, vxy, qx, qy] = centre_gradient(el, quads, velocity, e);
+    double mean_pressure = 0.0, p[4], rate[4];
     for (std::size_t a = 0; a < 4; ++a) {
       const auto node = static_cast<std::size_t>(quads[4 * e + a]);
-      const double vx = velocity[2 * node], vy = velocity[2 * node + 1], nx = el.dndx[4 * e + a],
-                   ny = el.dndy[4 * e + a];
-      vxx += nx * vx;
-      vyy += ny * vy;
-      vxy += ny * vx + nx * vy;
-      qx += el.gamma[4 * e + a] * vx;
-      qy += el.gamma[4 * e + a] * vy;
       p[a] = pressure[node];
       rate[a] = pressure_rate[node];
       mean_pressure += 0.25 * p[a];

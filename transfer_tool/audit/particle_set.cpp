@@ -3,19 +3,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "common/vtkhdf.hpp"
+
 namespace tailrun::transfer {
-namespace {
-
-std::vector<double> with_third(const std::vector<double>& plane) {
-  std::vector<double> space(plane.size() / 2 * 3, 0.0);
-  for (std::size_t i = 0; i < plane.size() / 2; ++i) {
-    space[3 * i] = plane[2 * i];
-    space[3 * i + 1] = plane[2 * i + 1];
-  }
-  return space;
-}
-
-}  // namespace
 
 ParticleSet particle_set(const Snapshot& snapshot, const SamplePoints& points, const PointState& state,
                          const Assignment& assignment) {

@@ -119,12 +119,7 @@ std::vector<double> read_stress(const CsvTable& table, const std::vector<std::si
 void derive_element_fields(Snapshot& snapshot, const std::vector<double>& initial_nodal_pressure) {
   const GroundSurface surface(snapshot);
   for (std::size_t e = 0; e < snapshot.elements(); ++e) {
-    const Corners corners = initial_corners(snapshot, e);
-    double x = 0.0, y = 0.0;
-    for (const auto& corner : corners) {
-      x += 0.25 * corner[0];
-      y += 0.25 * corner[1];
-    }
+    const auto [x, y] = centre(initial_corners(snapshot, e));
     const double pressure = element_mean(snapshot.quads, snapshot.pore_pressure, e);
     const double initial_pressure = element_mean(snapshot.quads, initial_nodal_pressure, e);
     const double initial_vertical = -snapshot.initial_effective_stress[4 * e + 1];

@@ -35,6 +35,13 @@ double jacobian(const Corners& corners, double xi, double eta) {
   return x_xi * y_eta - x_eta * y_xi;
 }
 
+std::array<double, 2> centre(const Corners& corners) {
+  std::array<double, 2> sum{};
+  for (const auto& corner : corners)
+    for (std::size_t i = 0; i < 2; ++i) sum[i] += 0.25 * corner[i];
+  return sum;
+}
+
 double area(const Corners& corners) {
   return 0.5 * ((corners[2][0] - corners[0][0]) * (corners[3][1] - corners[1][1]) -
                 (corners[2][1] - corners[0][1]) * (corners[3][0] - corners[1][0]));

@@ -19,6 +19,9 @@ NodeWeights shape_functions(double xi, double eta);
 // interpolation of its values at the nodes.
 double jacobian(const Corners& corners, double xi, double eta);
 
+// Mean of the four corners, m.
+std::array<double, 2> centre(const Corners& corners);
+
 // Exact area, m2: (diagonal x diagonal)/2; negative when the nodes run clockwise.
 double area(const Corners& corners);
 

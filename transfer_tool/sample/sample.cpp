@@ -49,11 +49,9 @@ Cell uniform_cell(const Corners& initial, const Corners& deformed, std::array<in
 }
 
 std::string named(const Snapshot& snapshot, std::size_t element) {
-  const Corners corners = initial_corners(snapshot, element);
+  const auto [x, y] = centre(initial_corners(snapshot, element));
   return fmt::format("element {} of region '{}' near ({:.2f}, {:.2f})", element,
-                     snapshot.region_names[static_cast<std::size_t>(snapshot.region_id[element])],
-                     0.25 * (corners[0][0] + corners[1][0] + corners[2][0] + corners[3][0]),
-                     0.25 * (corners[0][1] + corners[1][1] + corners[2][1] + corners[3][1]));
+                     snapshot.region_names[static_cast<std::size_t>(snapshot.region_id[element])], x, y);
 }
 
 }  // namespace
@@ -61,12 +59,7 @@ std::string named(const Snapshot& snapshot, std::size_t element) {
 std::vector<bool> kept_elements(const Snapshot& snapshot, const SamplingOptions& options) {
   std::vector<bool> kept(snapshot.elements(), false);
   for (std::size_t e = 0; e < snapshot.elements(); ++e) {
-    const Corners corners = initial_corners(snapshot, e);
-    double x = 0.0, y = 0.0;
-    for (const auto& corner : corners) {
-      x += 0.25 * corner[0];
-      y += 0.25 * corner[1];
-    }
+    const auto [x, y] = centre(initial_corners(snapshot, e));
     kept[e] = options.kept_region[static_cast<std::size_t>(snapshot.region_id[e])] && x >= options.clip_x[0] &&
               x <= options.clip_x[1] && y >= options.clip_y[0] && y <= options.clip_y[1];
   }
