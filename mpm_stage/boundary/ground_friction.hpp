@@ -102,29 +102,6 @@ inline double apply_friction(const NodeGrip& grip, double impulse, std::array<do
   return grip.mass * (sliding - left) * left;
 }
 
-// Index of the node `step` (-1, 0, 1 in each direction) away from node n of active block a, in arrays of Block::nodes
-// values per active block; -1 where no contact block lies.
-template <int Dim>
-inline std::ptrdiff_t neighbour_node(const ContactNodes<Dim>& ground, std::size_t a, int n, int step) {
-  constexpr int B = Block<Dim>::cells;
-  int at = 0, block = 0;
-  for (int d = 0, stride = 1, three = 1; d < Dim; ++d, stride *= B, three *= 3, n /= B, step /= 3) {
-    int i = n % B + step % 3 - 1;
-    int side = 1;
-    if (i < 0) {
-      i += B;
-      side = 0;
-    } else if (i >= B) {
-      i -= B;
-      side = 2;
-    }
-    at += i * stride;
-    block += side * three;
-  }
-  const int other = ground.contact_around(a)[block];
-  return other < 0 ? -1 : static_cast<std::ptrdiff_t>(other) * Block<Dim>::nodes + at;
-}
-
 // Friction impulse per unit mass that node n spreads: its capacity over the masses in contact around it.
 template <int Dim>
 inline double spread_of(const ContactNodes<Dim>& ground, const std::vector<NodeGrip>& grip, std::size_t a, int n) {
@@ -132,7 +109,7 @@ inline double spread_of(const ContactNodes<Dim>& ground, const std::vector<NodeG
   if (capacity <= 0.0) return 0.0;
   double mass = 0.0;
   for (int s = 0; s < Block<Dim>::neighbours; ++s) {
-    const auto k = neighbour_node(ground, a, n, s);
+    const auto k = node_beside<Dim>(ground.contact_around(a), n, neighbour_step<Dim>(s));
     if (k >= 0) mass += grip[static_cast<std::size_t>(k)].mass;
   }
   return capacity / mass;
@@ -144,7 +121,7 @@ inline double pooled_impulse(const ContactNodes<Dim>& ground, const std::vector<
                              const std::vector<double>& spread, std::size_t a, int n) {
   double sum = 0.0;
   for (int s = 0; s < Block<Dim>::neighbours; ++s) {
-    const auto k = neighbour_node(ground, a, n, s);
+    const auto k = node_beside<Dim>(ground.contact_around(a), n, neighbour_step<Dim>(s));
     if (k >= 0) sum += spread[static_cast<std::size_t>(k)];
   }
   return sum * grip[a * Block<Dim>::nodes + n].mass;

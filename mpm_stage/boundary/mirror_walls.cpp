@@ -1,29 +1,6 @@
 #include "mpm_stage/boundary/mirror_walls.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace tailrun::mpm {
-
-namespace {
-
-// Number of the node at `index` (counted from the origin) near active block a; -1 when its block is not active.
-template <int Dim>
-std::ptrdiff_t node_number(const BlockGrid<Dim>& grid, std::size_t a, const std::array<int, Dim>& index) {
-  constexpr int B = Block<Dim>::cells;
-  int at = 0, side = 0;
-  for (int d = 0, stride = 1, three = 1; d < Dim; ++d, stride *= B, three *= 3) {
-    const int block = static_cast<int>(std::floor(static_cast<double>(index[d]) / B));
-    const int step = block - grid.active_index(a)[d];
-    if (step < -1 || step > 1) return -1;
-    side += (step + 1) * three;
-    at += (index[d] - block * B) * stride;
-  }
-  const int other = grid.active_beside(a, side);
-  return other < 0 ? -1 : static_cast<std::ptrdiff_t>(other) * Block<Dim>::nodes + at;
-}
-
-}  // namespace
 
 template <int Dim>
 void MirrorWalls<Dim>::update(const BlockGrid<Dim>& grid, const WallNodes<Dim>& walls, int reach) {
@@ -37,12 +14,14 @@ void MirrorWalls<Dim>::update(const BlockGrid<Dim>& grid, const WallNodes<Dim>& 
         const int first = grid.active_index(a)[d] * B;
         if (first > wall.node + reach || first + B <= wall.node - reach) continue;
         for (int n = 0; n < Block<Dim>::nodes; ++n) {
-          std::array<int, Dim> index;
-          for (int e = 0, k = n; e < Dim; ++e, k /= B) index[e] = grid.active_index(a)[e] * B + k % B;
-          const int depth = s == 0 ? index[d] - wall.node : wall.node - index[d];
+          const int inwards = grid.node_index(a, n)[d] - wall.node, depth = s == 0 ? inwards : -inwards;
           if (depth < 0 || depth > reach) continue;
-          index[d] = 2 * wall.node - index[d];
-          pairs_.push_back({a * Block<Dim>::nodes + static_cast<std::size_t>(n), node_number<Dim>(grid, a, index), d,
+          std::array<int, Dim> to_image{};
+          to_image[d] = -2 * inwards;
+          const NodePlace image = node_place<Dim>(n, to_image);
+          const int block = grid.active_beside(a, image.block);
+          pairs_.push_back({a * Block<Dim>::nodes + static_cast<std::size_t>(n),
+                            block < 0 ? -1 : static_cast<std::ptrdiff_t>(block) * Block<Dim>::nodes + image.node, d,
                             wall.kind == WallKind::fixed});
         }
       }

@@ -16,27 +16,11 @@ void SurfaceExtension<Dim>::update(const BlockGrid<Dim>& grid, std::vector<Surfa
     for (int k = 0; k < Block<Dim>::neighbours; ++k) beside_[a][k] = grid.active_beside(a, k);
 }
 
-// Index of the node `step` nodes away from node n of active block a, -1 where no block is active.
-template <int Dim>
-std::ptrdiff_t SurfaceExtension<Dim>::node_at(std::size_t a, int n, const std::array<int, Dim>& step) const {
-  constexpr int B = Block<Dim>::cells;
-  int at = 0, side = 0;
-  for (int d = 0, stride = 1, three = 1; d < Dim; ++d, stride *= B, three *= 3, n /= B) {
-    const int i = n % B + step[d] + B;
-    side += i / B * three;
-    at += i % B * stride;
-  }
-  const int other = beside_[a][side];
-  return other < 0 ? -1 : static_cast<std::ptrdiff_t>(other) * Block<Dim>::nodes + at;
-}
-
 template <int Dim>
 double SurfaceExtension<Dim>::heaviest_beside(const Vec4* sums, std::size_t a, int n) const {
   double heaviest = 0.0;
   for (int s = 0; s < Block<Dim>::neighbours; ++s) {
-    std::array<int, Dim> step;
-    for (int d = 0, r = s; d < Dim; ++d, r /= 3) step[d] = r % 3 - 1;
-    const auto j = node_at(a, n, step);
+    const auto j = node_beside<Dim>(beside_[a], n, neighbour_step<Dim>(s));
     if (j >= 0 && role_[j] != SurfaceRole::none) heaviest = std::max(heaviest, sums[j][0]);
   }
   return heaviest;
@@ -101,7 +85,7 @@ void SurfaceExtension<Dim>::fit(std::size_t a, int n, const Vec4* sums, double h
       step[d] = r % width - reach;
       far += step[d] * step[d];
     }
-    const auto j = node_at(a, n, step);
+    const auto j = node_beside<Dim>(beside_[a], n, step);
     if (j < 0 || light_[j] || role_[j] == SurfaceRole::none || sums[j][0] < share_ * heaviest) continue;
     node[count] = static_cast<std::size_t>(j);
     weight[count] = sums[j][0] / (heaviest * far * far);

@@ -64,7 +64,6 @@ class SurfaceExtension {
     std::vector<Continued> continued;
     std::vector<Source> sources;
   };
-  std::ptrdiff_t node_at(std::size_t a, int n, const std::array<int, Dim>& step) const;
   double heaviest_beside(const Vec4* sums, std::size_t a, int n) const;
   bool is_light(const Vec4* sums, std::size_t k, double heaviest) const;
   void fit(std::size_t a, int n, const Vec4* sums, double heaviest, Found& found) const;

@@ -43,6 +43,7 @@ void for_each_number(SolverState<Dim>& s, RunState& r, Action action) {
   action("viscous_limit", s.viscous_limit);
   action("drift", s.drift);
   action("fastest_wave", s.fastest_wave);
+  action("kinetic", s.kinetic);
   integer("sorts", s.sorts);
   action("work_plastic", s.work.plastic);
   action("work_friction", s.work.friction);
@@ -50,6 +51,8 @@ void for_each_number(SolverState<Dim>& s, RunState& r, Action action) {
   action("work_external", s.work.external);
   action("work_removed", s.work.removed);
   action("work_pore_pressure", s.work.pore_pressure);
+  action("work_transfer", s.work.transfer);
+  action("work_impact", s.work.impact);
   action("seconds_grid", s.seconds.grid);
   action("seconds_grid_to_particles", s.seconds.grid_to_particles);
   action("seconds_volumetric", s.seconds.volumetric);
@@ -76,9 +79,10 @@ void for_each_number(SolverState<Dim>& s, RunState& r, Action action) {
 // Rows of the series as plain numbers, for writing and for reading.
 template <class Action>
 void for_each_value(LedgerRow& r, Action action) {
-  for (double* x : {&r.time, &r.kinetic, &r.elastic, &r.gravitational, &r.work.plastic, &r.work.friction,
-                    &r.work.damping, &r.work.external, &r.work.removed, &r.work.pore_pressure, &r.residual, &r.mass,
-                    &r.momentum[0], &r.momentum[1], &r.momentum[2], &r.angular_momentum})
+  for (double* x :
+       {&r.time, &r.kinetic, &r.elastic, &r.gravitational, &r.work.plastic, &r.work.friction, &r.work.damping,
+        &r.work.external, &r.work.removed, &r.work.pore_pressure, &r.work.transfer, &r.work.impact, &r.lost,
+        &r.residual, &r.mass, &r.momentum[0], &r.momentum[1], &r.momentum[2], &r.angular_momentum})
     action(*x);
 }
 
@@ -134,19 +138,18 @@ void check_inputs(const Hdf5Reader& file, const Provenance& provenance) {
 }  // namespace
 
 template <int Dim>
-void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, double cell_size, const RunState& run,
+void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, double cell_size, RunState run,
                       const Provenance& provenance) {
   Hdf5Writer file(path);
   write_format(file, format_name, checkpoint_format_version);
   write_provenance(file, provenance);
   SolverState<Dim> state = solver.state();
-  RunState copy = run;
 
   file.group("/numbers");
   file.attribute("/numbers", "dimension", static_cast<double>(Dim));
   file.attribute("/numbers", "cell_size", cell_size);
   file.attribute("/numbers", "grip_blocks", static_cast<double>(state.grip.blocks.size()));
-  for_each_number(state, copy, [&](const char* name, double value) { file.attribute("/numbers", name, value); });
+  for_each_number(state, run, [&](const char* name, double value) { file.attribute("/numbers", name, value); });
 
   const Particles<Dim>& P = solver.particles();
   for_each_kept_column(P, [&](const std::string& name, const char* unit, const auto& column) {
@@ -176,8 +179,8 @@ void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, do
   file.write("/particles/removed", std::span<const std::int32_t>(state.removed), 0, "1", "rows of the input");
   file.write("/particles/held", std::span<const std::int32_t>(state.held), 0, "1", "rows of the input");
 
-  write_rows(file, "/series/ledger", run.ledger);
-  write_rows(file, "/series/front", run.front);
+  write_rows(file, "/series/ledger", std::move(run.ledger));
+  write_rows(file, "/series/front", std::move(run.front));
   if (!state.bodies.empty()) {
     std::vector<double> bodies;
     for (const BodyState<Dim>& b : state.bodies) {
@@ -185,7 +188,7 @@ void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, do
       bodies.insert(bodies.end(), b.impulse.begin(), b.impulse.end());
     }
     file.write("/series/body_state", bodies, 2 * Dim, "m, N s", "displacement and impulse of each moving body");
-    write_rows(file, "/series/bodies", run.bodies);
+    write_rows(file, "/series/bodies", std::move(run.bodies));
   }
   file.write_texts("/series/frame_names", run.frame_names, "frames written so far");
   file.write("/series/frame_times", run.frame_times, 0, "s", "their times");
@@ -276,8 +279,8 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
   return run;
 }
 
-template void write_checkpoint<2>(const std::filesystem::path&, Solver<2>&, double, const RunState&, const Provenance&);
-template void write_checkpoint<3>(const std::filesystem::path&, Solver<3>&, double, const RunState&, const Provenance&);
+template void write_checkpoint<2>(const std::filesystem::path&, Solver<2>&, double, RunState, const Provenance&);
+template void write_checkpoint<3>(const std::filesystem::path&, Solver<3>&, double, RunState, const Provenance&);
 template RunState read_checkpoint<2>(const std::filesystem::path&, Solver<2>&, double, const Provenance&);
 template RunState read_checkpoint<3>(const std::filesystem::path&, Solver<3>&, double, const Provenance&);
 

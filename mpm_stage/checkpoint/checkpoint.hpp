@@ -15,7 +15,7 @@
 
 namespace tailrun::mpm {
 
-constexpr int checkpoint_format_version = 2;
+constexpr int checkpoint_format_version = 3;
 
 // What the run loop has to remember besides the solver.
 struct RunState {
@@ -31,7 +31,7 @@ struct RunState {
 
 // Throws ComputationError when the file cannot be written.
 template <int Dim>
-void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, double cell_size, const RunState& run,
+void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, double cell_size, RunState run,
                       const Provenance& provenance);
 
 // Brings `solver`, newly made from the same scene and not started, to where the checkpoint was written, and returns the

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -26,6 +27,42 @@ struct Block {
   static constexpr int nodes = power(cells, Dim);
   static constexpr int neighbours = power(3, Dim);  // itself included, x fastest
 };
+
+// Neighbour position k as steps of -1, 0 or 1 in each direction.
+template <int Dim>
+constexpr std::array<int, Dim> neighbour_step(int k) {
+  std::array<int, Dim> step{};
+  for (int d = 0; d < Dim; ++d, k /= 3) step[d] = k % 3 - 1;
+  return step;
+}
+
+// A node as seen from a block: the neighbour position of the block that has it, and its number there.
+struct NodePlace {
+  int block, node;
+};
+
+// The node `step` away from a block's node n, at most a block's side in each direction.
+template <int Dim>
+constexpr NodePlace node_place(int n, const std::array<int, Dim>& step) {
+  constexpr int B = Block<Dim>::cells;
+  NodePlace place{0, 0};
+  for (int d = 0, stride = 1, three = 1; d < Dim; ++d, stride *= B, three *= 3, n /= B) {
+    const auto i = static_cast<unsigned>(n % B + step[d] + B);
+    place.block += static_cast<int>(i / B) * three;
+    place.node += static_cast<int>(i % B) * stride;
+  }
+  return place;
+}
+
+// Its index in arrays of Block::nodes values per block, -1: none. `around` has the blocks at the neighbour positions
+// (-1: none).
+template <int Dim>
+constexpr std::ptrdiff_t node_beside(const std::array<int, Block<Dim>::neighbours>& around, int n,
+                                     const std::array<int, Dim>& step) {
+  const NodePlace place = node_place<Dim>(n, step);
+  const int block = around[place.block];
+  return block < 0 ? -1 : static_cast<std::ptrdiff_t>(block) * Block<Dim>::nodes + place.node;
+}
 
 // Nodes of a tile: from `low` to `low + side - 1` in each direction, counted from the block's first node.
 template <int Dim, class Shape>
@@ -66,6 +103,13 @@ class BlockGrid {
   std::size_t active() const { return active_index_.size(); }
   const Index& occupied_index(std::size_t b) const { return occupied_index_[b]; }  // in blocks
   const Index& active_index(std::size_t a) const { return active_index_[a]; }
+  // Node n of active block a, in nodes from the origin.
+  Index node_index(std::size_t a, int n) const {
+    Index node;
+    for (int d = 0; d < Dim; ++d, n /= Block<Dim>::cells)
+      node[d] = active_index_[a][d] * Block<Dim>::cells + n % Block<Dim>::cells;
+    return node;
+  }
   std::size_t first_particle(std::size_t b) const { return first_[b]; }
   std::size_t last_particle(std::size_t b) const { return first_[b + 1]; }
   const std::vector<Index>& occupied_indices() const { return occupied_index_; }

@@ -48,32 +48,35 @@ const LedgerRow& Ledger<Dim>::sample(double time, Solver<Dim>& solver, double li
   largest_kinetic_ = std::max(largest_kinetic_, row.kinetic);
   if (!rows_.empty()) {
     const LedgerRow& first = rows_.front();
+    row.lost = first.total() + row.work.external + row.work.pore_pressure - losses(row.work) - row.total();
     // A particle that left took its height's energy along, so mass that went is no longer comparable.
-    row.residual = first.total() + row.work.external + row.work.pore_pressure - losses(row.work) - row.total();
-    if (row.mass < first.mass * (1.0 - 1e-12)) row.residual = std::nan("");
+    if (row.mass < first.mass * (1.0 - 1e-12)) row.lost = std::nan("");
+    row.residual = row.lost - (std::isnan(row.work.transfer) ? 0.0 : row.work.transfer + row.work.impact);
   }
   rows_.push_back(row);
   const double scale = turnover();
-  if (!std::isfinite(row.total()) || row.residual < -limit * scale - 1e-9 * std::fabs(rows_.front().total()))
-    throw ComputationError(fmt::format(
-        "energy has grown without work that explains it: at t = {:.6g} s the ledger's residual is {:.4g} J of {:.4g} J "
-        "turned over (limit {} of it); a shorter time step (time/courant) may help",
-        time, row.residual, scale, limit));
+  if (!std::isfinite(row.total()) || row.lost < -limit * scale - 1e-9 * std::fabs(rows_.front().total()))
+    throw ComputationError(
+        fmt::format("{}, the most of all per mass: energy has grown without work that explains it, by {:.4g} J of "
+                    "{:.4g} J turned over (limit {} of it); a shorter time step (time/courant) may help",
+                    solver.most_energetic(), -row.lost, scale, limit));
   return rows_.back();
 }
 
 template <int Dim>
 void Ledger<Dim>::write(const std::filesystem::path& path) const {
   std::string text =
-      "time_s,kinetic_J,elastic_J,gravitational_J,plastic_J,friction_J,damping_J,external_J,pore_pressure_J,residual_J,"
-      "mass_kg,momentum_x_Ns,momentum_y_Ns,momentum_z_Ns,angular_momentum_Nms\n";
+      "time_s,kinetic_J,elastic_J,gravitational_J,plastic_J,friction_J,damping_J,external_J,pore_pressure_J,transfer_J,"
+      "impact_J,residual_J,mass_kg,momentum_x_Ns,momentum_y_Ns,momentum_z_Ns,angular_momentum_Nms\n";
   for (const auto& r : rows_)
     text += fmt::format(
-        "{:.9g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.15g},{:.15g},{:.15g},{:.15g}"
+        "{:.9g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.15g},{:.15g}"
+        ",{:.15g},{:.15g}"
         ",{:.15g}"
         "\n",
         r.time, r.kinetic, r.elastic, r.gravitational, r.work.plastic, r.work.friction, r.work.damping, r.work.external,
-        r.work.pore_pressure, r.residual, r.mass, r.momentum[0], r.momentum[1], r.momentum[2], r.angular_momentum);
+        r.work.pore_pressure, r.work.transfer, r.work.impact, r.residual, r.mass, r.momentum[0], r.momentum[1],
+        r.momentum[2], r.angular_momentum);
   write_text_file(path.string(), text);
 }
 

@@ -1,5 +1,7 @@
-// The energy ledger: where the energy of the start went. What the separately counted losses do not explain is the
-// residual: what the transfer between particles and grid, the time integration and impacts on the ground took.
+// The energy ledger: where the energy of the start went. What the separately counted losses do not explain has been
+// lost by the scheme: between particles and nodes, in impacts (step/solver.hpp says how these two are counted), and the
+// residual, by the integration in time of motion and stress, the averages of volumetric strain and mean stress, and
+// sleep.
 #pragma once
 
 #include <array>
@@ -16,7 +18,8 @@ struct LedgerRow {
   double time = 0.0;                                         // s
   double kinetic = 0.0, elastic = 0.0, gravitational = 0.0;  // J (per metre in plane strain)
   WorkDone work;                                             // J, since the start
-  double residual = 0.0;                                     // J, positive: lost in the transfer
+  double lost = 0.0;                                         // J, by the scheme
+  double residual = 0.0;                                     // J, of that neither in the transfer nor in impacts
   double mass = 0.0;                                         // kg
   std::array<double, 3> momentum{};                          // N s
   double angular_momentum = 0.0;                             // N m s, about the origin, z component
@@ -29,7 +32,8 @@ class Ledger {
   explicit Ledger(std::array<double, Dim> gravity) : gravity_(gravity) {}
 
   // Adds a row. The first one is the reference. Throws ComputationError when energy has grown by more than `limit`
-  // (share of the energy that has been set free so far) without work that explains it.
+  // (share of the energy that has been set free so far) without work that explains it; the message names the particle
+  // with the most energy per mass.
   const LedgerRow& sample(double time, Solver<Dim>& solver, double limit);
 
   const std::vector<LedgerRow>& rows() const { return rows_; }

@@ -131,8 +131,11 @@ Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& reco
                  {"external_J", last.work.external},
                  {"pore_pressure_J", last.work.pore_pressure},
                  {"removed_J", last.work.removed},
+                 {"transfer_J", last.work.transfer},
+                 {"impact_J", last.work.impact},
                  {"residual_J", last.residual},
                  {"turnover_J", ledger.turnover()},
+                 {"lost_ratio", ledger.turnover() > 0.0 ? last.lost / ledger.turnover() : 0.0},
                  {"residual_ratio", ledger.turnover() > 0.0 ? last.residual / ledger.turnover() : 0.0}};
   j["mass_kg"] = last.mass;
   j["momentum_N_s"] = {last.momentum[0], last.momentum[1], last.momentum[2]};

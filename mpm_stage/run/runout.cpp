@@ -111,10 +111,13 @@ class Runout {
     finish();
     std::filesystem::remove(checkpoint_);
     const auto& f = front_.rows();
-    fmt::print("{}: {} after {:.3f} s, {} steps; front {:.3f} m -> {:.3f} m; energy residual {:.2e} of {:.4g} J\n",
-               scene_.title, record_.stop_reason, record_.time, record_.steps, f.front().robust_front,
-               f.back().robust_front, ledger_.rows().back().residual / std::max(ledger_.turnover(), 1e-300),
-               ledger_.turnover());
+    const double turnover = std::max(ledger_.turnover(), 1e-300);
+    fmt::print(
+        "{}: {} after {:.3f} s, {} steps; front {:.3f} m -> {:.3f} m; of {:.4g} J turned over the scheme lost "
+        "{:.1f} %, residual {:.2f} %\n",
+        scene_.title, record_.stop_reason, record_.time, record_.steps, f.front().robust_front, f.back().robust_front,
+        ledger_.turnover(), 100.0 * ledger_.rows().back().lost / turnover,
+        100.0 * ledger_.rows().back().residual / turnover);
   }
 
  private:
@@ -173,7 +176,7 @@ class Runout {
     state.largest_kinetic = ledger_.largest_kinetic();
     state.front = front_.rows();
     state.bodies = bodies_.rows();
-    write_checkpoint<Dim>(checkpoint_, *solver_, scene_.cell_size, state, provenance_);
+    write_checkpoint<Dim>(checkpoint_, *solver_, scene_.cell_size, std::move(state), provenance_);
     last_checkpoint_ = Clock::now();
   }
 

@@ -50,6 +50,7 @@ class ExplicitSolver final : public Solver<Dim> {
         materials_(materials),
         walls_(walls),
         bodies_(walls.bodies.size()),
+        body_velocity_(walls.bodies.size()),
         ground_(terrain, options.contact_reach * cell_size),
         extension_(options.surface_share),
         sleep_(options.sleep) {
@@ -77,16 +78,15 @@ class ExplicitSolver final : public Solver<Dim> {
         side.node = static_cast<int>(std::lround(((s == 0 ? walls.low[d] : walls.high[d]) - origin[d]) * h1_));
         wall_nodes_.any = wall_nodes_.any || side.kind != WallKind::open;
       }
+    if (!Split) work_.transfer = work_.impact = std::nan("");
   }
 
   void start(double limit) override {
     sort();
-    double fastest = 0.0;
-    for (std::size_t b = 0; b < grid_.occupied(); ++b)
-      for (const Run& run : grid_.runs(b))
-        for (std::size_t p = run.begin; p < run.end; ++p)
-          fastest = std::max(fastest, wave_speed_[run.material] + std::sqrt(speed_squared(p)));
-    fastest_wave_ = fastest;
+    for (std::size_t p = 0; p < P_.count(); ++p) {
+      fastest_wave_ = std::max(fastest_wave_, wave_speed_[P_.material[p]] + std::sqrt(speed_squared(p)));
+      kinetic_ += 0.5 * P_.mass[p] * speed_squared(p);
+    }
     next_dt_ = longest_step(limit);
     particles_to_grid();
   }
@@ -140,6 +140,7 @@ class ExplicitSolver final : public Solver<Dim> {
     return energy;
   }
 
+  std::string most_energetic() const override;
   double unbalanced_force_ratio(const std::array<double, Dim>& body) const override;
 
   std::size_t grid_bytes() const override {
@@ -202,6 +203,10 @@ class ExplicitSolver final : public Solver<Dim> {
   void add_change(std::size_t node, const std::array<double, Dim>& dv) {
     for (int d = 0; d < Dim; ++d) (separate_change ? change_[node][d] : velocity_[node][2 + d]) += dv[d];
   }
+  // m/s, of the node's velocity over this step, with the changes added so far.
+  double change_of(std::size_t node, int d) const {
+    return separate_change ? change_[node][d] : velocity_[node][2 + d];
+  }
   void limit_volumes();
   void sort();
   void lay_out();
@@ -210,7 +215,8 @@ class ExplicitSolver final : public Solver<Dim> {
   void remember_grip(const GripMemory<Dim>& memory);
   bool in_reach_of_body(std::size_t a, int n) const;
   bool still(std::size_t a) const;
-  bool sleeps_on(std::size_t b, double dt);
+  bool sleeps_on(std::size_t b, const Vec4* tile, double dt);
+  double wave_speed_in(std::size_t b) const;
   void lay_to_rest(std::size_t b, BlockMotion& motion);
   void mind_sides(std::size_t b, BlockMotion& motion);
   void update_grid(double dt, const std::array<double, Dim>& body, const std::array<double, Dim>& inertial);
@@ -226,8 +232,10 @@ class ExplicitSolver final : public Solver<Dim> {
   void particles_to_grid();
   void scatter_block(std::size_t b);
   void scatter_ground_gaps(std::size_t b);
-  void rub_ground();
+  void rub_ground(double dt, const std::array<double, Dim>& inertial);
+  void sum_kinetic_after();
   void move_bodies(double dt);
+  std::string description(std::size_t p) const;
   [[noreturn]] void fail(std::size_t begin, std::size_t end, const std::string& what) const;
 
   SolverOptions options_;
@@ -238,6 +246,7 @@ class ExplicitSolver final : public Solver<Dim> {
   std::vector<MaterialConstants> constants_;
   Walls<Dim> walls_;
   std::vector<BodyState<Dim>> bodies_;
+  std::vector<std::array<double, Dim>> body_velocity_;  // m/s, in this step
   WallNodes<Dim> wall_nodes_;
   ContactNodes<Dim> ground_;
   MirrorWalls<Dim> mirrors_;
@@ -245,6 +254,8 @@ class ExplicitSolver final : public Solver<Dim> {
   SleepingBlocks<Dim> sleep_;
   std::array<double, Dim> body_{};
   bool averaging_ = false, leaving_ = false;
+  double kinetic_ = 0.0;     // J, of the particles on the nodes
+  double nodes_gain_ = 0.0;  // J, what the nodes' kinetic energy has grown by in this step
   double mass_cutoff_ = 0.0, time_ = 0.0, next_dt_ = 0.0, drift_ = 0.0, fastest_wave_ = 0.0, viscous_limit_ = 1e30;
   std::vector<double> wave_speed_;  // m/s, by material
 
@@ -283,7 +294,9 @@ class ExplicitSolver final : public Solver<Dim> {
 
 }  // namespace tailrun::mpm
 
+#include "mpm_stage/step/explicit_solver_contact.hpp"
 #include "mpm_stage/step/explicit_solver_phases.hpp"
+#include "mpm_stage/step/explicit_solver_sleep.hpp"
 #include "mpm_stage/step/explicit_solver_upkeep.hpp"
 #include "mpm_stage/step/mass_filter.hpp"
 

@@ -12,7 +12,6 @@ template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const std::array<double, Dim>& body,
                                                               const std::array<double, Dim>& inertial) {
   const auto since = Clock::now();
-  constexpr int B = Block<Dim>::cells;
   bool shaken = false;
   for (const double a : inertial) shaken = shaken || a != 0.0;
   // Nodes at mirrors need their images' sums, so those are complete before any velocity is made.
@@ -73,9 +72,11 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
         }
         v[d] += dt * (body[d] + inertial[d]);
       }
-      if constexpr (Split)
+      if constexpr (Split) {
+        sums.kinetic_before += 0.5 * m * square<Dim>(before);
         if (options_.local_damping > 0.0)
           sums.damping += m * apply_local_damping<Dim>(options_.local_damping, dt, before, v);
+      }
       const std::array<double, Dim> pushed = v;
       if (contact && contact[n].count > 0) {
         NodeGrip& grip = grip_[a * block_nodes + n];
@@ -83,24 +84,26 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
         const double share = smoothing_share(dt * h1_ * fastest_wave_, dt * h1_ * sliding_speed<Dim>(contact[n], v));
         smooth_grip(contact[n], m, dt, share, smoothed_grip_[a * block_nodes + n], grip);
       }
-      if (wall_nodes_.any) {
-        std::array<int, Dim> node;
-        for (int d = 0, k = n; d < Dim; ++d, k /= B) node[d] = grid_.active_index(a)[d] * B + k % B;
-        apply_walls<Dim>(wall_nodes_, node, m, v, sums);
-      }
+      const double rubbed = sums.friction;
+      if (wall_nodes_.any) apply_walls<Dim>(wall_nodes_, grid_.node_index(a, n), m, v, sums);
       for (int d = 0; d < Dim; ++d) sums.impulse[d] += m * (v[d] - pushed[d]);
       if (shaken)
         for (int d = 0; d < Dim; ++d) sums.external += dt * m * inertial[d] * v[d];
       out = node_velocity<Dim>(v.data());
       if constexpr (Split) {
-        for (int d = 0; d < Dim; ++d) before[d] = v[d] - before[d];
+        sums.kinetic_after += 0.5 * m * square<Dim>(v);
+        for (int d = 0; d < Dim; ++d) {
+          sums.impact -= 0.5 * m * (v[d] - pushed[d]) * (before[d] + v[d]);
+          before[d] = v[d] - before[d];
+        }
+        sums.impact -= sums.friction - rubbed;
         if constexpr (separate_change) change_[a * block_nodes + n] = Vec4{};
         add_change(a * block_nodes + n, before);
       }
     }
     grid_sums_[a] = sums;
   }
-  if (ground_.any()) rub_ground();
+  if (ground_.any()) rub_ground(dt, inertial);
   if (!bodies_.empty()) move_bodies(dt);
   const auto reflect = [this] {
     mirrors_.reflect(velocity_.data());
@@ -112,54 +115,18 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
     if constexpr (separate_change) extension_.extend(change_.data());
     if (mirrors_.any()) reflect();
   }
+  if constexpr (Split)
+    if (whole) sum_kinetic_after();
+  nodes_gain_ = 0.0;
   for (const auto& s : grid_sums_) {
     work_.friction += s.friction;
     work_.damping += s.damping;
     work_.external += s.external;
+    if constexpr (Split) work_.impact += s.impact;
+    nodes_gain_ += s.kinetic_after - s.kinetic_before;
     for (int d = 0; d < Dim; ++d) impulse_[d] += s.impulse[d];
   }
   add_time(seconds_.grid, since);
-}
-
-// The ground's friction on the nodes' velocities.
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_ground() {
-#pragma omp parallel for schedule(dynamic, 4)
-  for (std::size_t a = 0; a < grid_.active(); ++a)
-    if (ground_.of_block(a))
-      for (int n = 0; n < block_nodes; ++n) spread_[a * block_nodes + n] = spread_of(ground_, grip_, a, n);
-#pragma omp parallel for schedule(dynamic, 4)
-  for (std::size_t a = 0; a < grid_.active(); ++a) {
-    if (!ground_.of_block(a)) continue;
-    for (int n = 0; n < block_nodes; ++n) {
-      const std::size_t k = a * block_nodes + n;
-      if (grip_[k].mass <= 0.0) continue;
-      std::array<double, Dim> v, lost{};
-      for (int d = 0; d < Dim; ++d) v[d] = lost[d] = velocity_[k][d];
-      grid_sums_[a].friction += apply_friction<Dim>(grip_[k], pooled_impulse(ground_, grip_, spread_, a, n), v);
-      for (int d = 0; d < Dim; ++d) {
-        lost[d] = v[d] - lost[d];
-        grid_sums_[a].impulse[d] += grip_[k].mass * lost[d];
-      }
-      for (int d = 0; d < Dim; ++d) velocity_[k][d] = v[d];
-      if constexpr (Split) add_change(k, lost);
-    }
-  }
-}
-
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::move_bodies(double dt) {
-  nodes_in_bodies_.clear();
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const std::array<double, Dim> v = walls_.bodies[b].velocity_at(time_ + 0.5 * dt);
-    work_.external += push_nodes<Dim>(grid_, walls_.bodies[b], v, sums_.data(), mass_cutoff_, velocity_.data(),
-                                      bodies_[b], [this, b](std::size_t k, const std::array<double, Dim>& dv) {
-                                        if constexpr (Split) add_change(k, dv);
-                                        if constexpr (Transfer == TransferName::fmpm)
-                                          nodes_in_bodies_.push_back({k, b});
-                                      });
-    for (int d = 0; d < Dim; ++d) bodies_[b].displacement[d] += dt * v[d];
-  }
 }
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
@@ -172,13 +139,13 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& 
   for (std::size_t b = 0; b < grid_.occupied(); ++b) {
     Vec4 tile[tile_nodes], change[Flip && separate_change ? tile_nodes : 1];
     load_tile<Dim, Shape>(grid_, b, velocity_.data(), tile);
-    if constexpr (Flip && separate_change) load_tile<Dim, Shape>(grid_, b, change_.data(), change);
     BlockMotion motion;
-    if (sleep_.asleep(b) && sleeps_on(b, dt)) {
-      motion_[b] = BlockMotion{.asleep = true};
+    if (sleep_.asleep(b) && sleeps_on(b, tile, dt)) {
+      motion_[b] = BlockMotion{.wave = wave_speed_in(b), .asleep = true};
       if (averaging_ && sleep_.stale(b)) scatter_average(b);
       continue;
     }
+    if constexpr (Flip && separate_change) load_tile<Dim, Shape>(grid_, b, change_.data(), change);
     for (const Run& run : grid_.runs(b)) {
       const MotionExtremes e =
           mpm::grid_to_particles<Shape, Flip, Affine>(s, tile, change, corner(b), P_, run.begin, run.end);
@@ -193,7 +160,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& 
     // The block's particles are still near the core. Should it be time to sort, this is done again after it.
     if (averaging_ && std::isfinite(motion.kinetic) && drift_ + motion.far * h1_ <= largest_drift) scatter_average(b);
   }
-  double far = 0.0, fast = 0.0;
+  double far = 0.0, fast = 0.0, gathered = 0.0;
   fastest_wave_ = 0.0;
   for (std::size_t b = 0; b < grid_.occupied(); ++b) {
     const BlockMotion& m = motion_[b];
@@ -207,53 +174,17 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& 
     fast = std::max(fast, m.fast);
     fastest_wave_ = std::max(fastest_wave_, m.wave);
     report.kinetic_energy += m.kinetic;
+    gathered += m.kinetic + m.stopped;
     leaving_ = leaving_ || m.outside;
     work_.removed += m.stopped;
     if (m.asleep) report.asleep += grid_.last_particle(b) - grid_.first_particle(b);
   }
   report.maximum_speed = std::sqrt(fast);
+  // Lost on the way to the nodes and on the way back.
+  if constexpr (Split) work_.transfer += kinetic_ - gathered + nodes_gain_;
+  kinetic_ = report.kinetic_energy;
   drift_ += far * h1_;
   add_time(seconds_.grid_to_particles, since);
-}
-
-// Whether only sleeping particles reach the nodes of active block a.
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-bool ExplicitSolver<Dim, Shape, Split, Transfer>::still(std::size_t a) const {
-  if (!sleep_.active()) return false;
-  for (const int b : grid_.tiles_around(a))
-    if (b >= 0 && !sleep_.asleep(static_cast<std::size_t>(b))) return false;
-  return true;
-}
-
-// Whether a sleeping block's nodes let it sleep on.
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-bool ExplicitSolver<Dim, Shape, Split, Transfer>::sleeps_on(std::size_t b, double dt) {
-  Vec4 tile[tile_nodes];
-  load_tile<Dim, Shape>(grid_, b, velocity_.data(), tile);
-  double fastest = 0.0;
-  for (const Vec4& v : tile) {
-    double squared = 0.0;
-    for (int d = 0; d < Dim; ++d) squared += v[d] * v[d];
-    fastest = std::max(fastest, squared);
-  }
-  if (fastest < sleep_.speed() * sleep_.speed()) return sleep_.doze(b, dt);
-  sleep_.wake(b);
-  return false;
-}
-
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_to_rest(std::size_t b, BlockMotion& motion) {
-  motion.stopped += motion.kinetic;
-  motion.kinetic = motion.fast = motion.wave = 0.0;
-  motion.asleep = true;
-  const auto still = [&](auto& columns) {
-    for (auto& column : columns)
-      if (!column.empty())
-        std::fill(column.data() + grid_.first_particle(b), column.data() + grid_.last_particle(b), 0.0);
-  };
-  still(P_.velocity);
-  still(P_.affine);
-  still(P_.gradient);
 }
 
 // Particles beyond a side of the domain: held there, or noticed, so that the sort deals with them.

@@ -31,6 +31,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::sort() {
       if (walls_.leaving == LeavingParticles::error) fail(p, p + 1, "left the domain (see domain/leaving_particles)");
       removed_.push_back(P_.identity[p]);
       work_.removed += 0.5 * P_.mass[p] * speed_squared(p);
+      kinetic_ -= 0.5 * P_.mass[p] * speed_squared(p);
     }
   }
   if (sleep_.active()) sleep_.before_sort(grid_);
@@ -128,11 +129,11 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::remember_grip(const GripMemory
 // Whether node n of active block a is in a body or may come to be before the next sort.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 bool ExplicitSolver<Dim, Shape, Split, Transfer>::in_reach_of_body(std::size_t a, int n) const {
+  const std::array<int, Dim> node = grid_.node_index(a, n);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     bool near = true;
-    for (int d = 0, k = n; d < Dim; ++d, k /= Block<Dim>::cells) {
-      const int node = grid_.active_index(a)[d] * Block<Dim>::cells + k % Block<Dim>::cells;
-      const double x = grid_.origin()[d] + node * h_ - bodies_[b].displacement[d];
+    for (int d = 0; d < Dim; ++d) {
+      const double x = grid_.origin()[d] + node[d] * h_ - bodies_[b].displacement[d];
       near = near && x > walls_.bodies[b].low[d] - h_ && x < walls_.bodies[b].high[d] + h_;
     }
     if (near) return true;
@@ -149,18 +150,17 @@ std::vector<SurfaceRole> ExplicitSolver<Dim, Shape, Split, Transfer>::surface_ro
       SurfaceRole& r = role[a * block_nodes + static_cast<std::size_t>(n)];
       if (contact && contact[n].count > 0) r = SurfaceRole::held;
       if (in_reach_of_body(a, n)) r = SurfaceRole::held;
-      for (int d = 0, k = n; d < Dim; ++d, k /= Block<Dim>::cells) {
-        const int node = grid_.active_index(a)[d] * Block<Dim>::cells + k % Block<Dim>::cells;
+      const std::array<int, Dim> node = grid_.node_index(a, n);
+      for (int d = 0; d < Dim; ++d)
         for (int s = 0; s < 2; ++s) {
           const auto& side = wall_nodes_.side[d][s];
-          const int depth = s == 0 ? node - side.node : side.node - node;
+          const int depth = s == 0 ? node[d] - side.node : side.node - node[d];
           if (side.kind == WallKind::open || depth > 0) continue;
           if (depth < 0)
             r = SurfaceRole::none;
           else if (side.kind != WallKind::slip)
             r = std::max(r, SurfaceRole::held);
         }
-      }
     }
   }
   return role;
@@ -176,6 +176,7 @@ SolverState<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::state() const {
   s.viscous_limit = viscous_limit_;
   s.drift = drift_;
   s.fastest_wave = fastest_wave_;
+  s.kinetic = kinetic_;
   s.sorts = sorts_;
   s.work = work_;
   s.seconds = seconds_;
@@ -201,6 +202,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::resume(Particles<Dim> particle
   viscous_limit_ = s.viscous_limit;
   drift_ = s.drift;
   fastest_wave_ = s.fastest_wave;
+  kinetic_ = s.kinetic;
   sorts_ = s.sorts;
   work_ = s.work;
   seconds_ = s.seconds;
@@ -233,13 +235,12 @@ double ExplicitSolver<Dim, Shape, Split, Transfer>::unbalanced_force_ratio(const
     for (int n = 0; n < block_nodes; ++n) {
       if (m[n][0] <= mass_cutoff_ || (contact && contact[n].count > 0)) continue;
       bool held = false;
-      for (int d = 0, k = n; d < Dim; ++d, k /= Block<Dim>::cells) {
-        const int node = grid_.active_index(a)[d] * Block<Dim>::cells + k % Block<Dim>::cells;
+      const std::array<int, Dim> node = grid_.node_index(a, n);
+      for (int d = 0; d < Dim; ++d)
         for (int s = 0; s < 2; ++s) {
           const auto& side = wall_nodes_.side[d][s];
-          held = held || (side.kind != WallKind::open && (s == 0 ? node <= side.node : node >= side.node));
+          held = held || (side.kind != WallKind::open && (s == 0 ? node[d] <= side.node : node[d] >= side.node));
         }
-      }
       if (held) continue;
       for (int d = 0; d < Dim; ++d) {
         const double g = m[n][0] * body[d], r = f[n][1 + d] + g;
@@ -268,11 +269,32 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::fail(std::size_t begin, std::s
       worst = p;
     }
   }
+  throw ComputationError(description(worst) + ", " + what);
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+std::string ExplicitSolver<Dim, Shape, Split, Transfer>::description(std::size_t p) const {
   std::string place;
-  for (int d = 0; d < Dim; ++d) place += fmt::format("{}{:.6g}", d ? ", " : "", P_.position[d][worst]);
-  throw ComputationError(fmt::format("particle {} of material '{}' at ({}) m, speed {:.4g} m/s, {}", P_.identity[worst],
-                                     materials_[P_.material[worst]].name, place, std::sqrt(speed_squared(worst)),
-                                     what));
+  for (int d = 0; d < Dim; ++d) place += fmt::format("{}{:.6g}", d ? ", " : "", P_.position[d][p]);
+  return fmt::format("particle {} of material '{}' at ({}) m, speed {:.4g} m/s", P_.identity[p],
+                     materials_[P_.material[p]].name, place, std::sqrt(speed_squared(p)));
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+std::string ExplicitSolver<Dim, Shape, Split, Transfer>::most_energetic() const {
+  std::size_t worst = 0;
+  double most = -1.0, kinetic = 0.0, elastic = 0.0;
+  for (std::size_t p = 0; p < P_.count() && std::isfinite(most); ++p) {
+    const double k = 0.5 * P_.mass[p] * speed_squared(p);
+    const double e = mpm::elastic_energy(constants_[P_.material[p]], P_, p, p + 1);
+    if ((k + e) / P_.mass[p] <= most) continue;
+    worst = p;
+    most = (k + e) / P_.mass[p];
+    kinetic = k;
+    elastic = e;
+  }
+  return fmt::format("{}, has a kinetic energy of {:.4g} J and an elastic one of {:.4g} J", description(worst), kinetic,
+                     elastic);
 }
 
 }  // namespace tailrun::mpm

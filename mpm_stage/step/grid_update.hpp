@@ -12,9 +12,17 @@ namespace tailrun::mpm {
 // Sums over the nodes of one block (J; N s), added up in the order of the blocks afterwards.
 template <int Dim>
 struct GridSums {
-  double friction = 0.0, damping = 0.0, external = 0.0;
+  double friction = 0.0, damping = 0.0, external = 0.0, impact = 0.0;
+  double kinetic_before = 0.0, kinetic_after = 0.0;  // of the nodes, at the step's ends
   std::array<double, Dim> impulse{};
 };
+
+template <int Dim>
+inline double square(const std::array<double, Dim>& v) {
+  double sum = 0.0;
+  for (const double x : v) sum += x * x;
+  return sum;
+}
 
 // Walls in numbers of nodes from the grid's origin.
 template <int Dim>

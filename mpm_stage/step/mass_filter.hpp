@@ -52,11 +52,10 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::filter_velocity(double dt) {
 #pragma omp parallel for schedule(dynamic, 4)
     for (std::size_t a = 0; a < grid_.active(); ++a) take_increment(a);
     for (const auto& [k, b] : nodes_in_bodies_) {
-      const std::array<double, Dim> v = walls_.bodies[b].velocity_at(time_ + 0.5 * dt);
       for (int d = 0; d < Dim; ++d) {
         const double taken = -sums_[k][0] * term_[k][d];
         bodies_[b].impulse[d] -= taken;
-        work_.external += taken * v[d];
+        work_.external += taken * body_velocity_[b][d];
       }
       term_[k] = Vec4{};
     }
@@ -67,8 +66,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::filter_velocity(double dt) {
   if (ground_.any()) {
 #pragma omp parallel for schedule(dynamic, 4)
     for (std::size_t a = 0; a < grid_.active(); ++a) keep_contact(a);
-    for (const auto& [k, b] : nodes_in_bodies_)
-      velocity_[k] = node_velocity<Dim>(walls_.bodies[b].velocity_at(time_ + 0.5 * dt).data());
+    for (const auto& [k, b] : nodes_in_bodies_) velocity_[k] = node_velocity<Dim>(body_velocity_[b].data());
     complete(velocity_);
   }
   for (const auto& s : grid_sums_) {
@@ -101,7 +99,6 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::take_increment(std::size_t a) 
 // Which nodes of block a touch ground or frictional walls, and what holds them there.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::find_held(std::size_t a, double dt) {
-  constexpr int B = Block<Dim>::cells;
   auto& found = held_nodes_[a];
   found.clear();
   const NodeContact* contact = ground_.of_block(a);
@@ -120,11 +117,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::find_held(std::size_t a, doubl
       node.allowed = std::max(0.0, gap[n].value) / dt;
       hold_by_ground<Dim>(contact[n], grip_[k], node.allowed, slack, v, node.held);
     }
-    if (wall_nodes_.any) {
-      std::array<int, Dim> index;
-      for (int d = 0, r = n; d < Dim; ++d, r /= B) index[d] = grid_.active_index(a)[d] * B + r % B;
-      hold_by_walls<Dim>(wall_nodes_, index, slack, v, node.held);
-    }
+    if (wall_nodes_.any) hold_by_walls<Dim>(wall_nodes_, grid_.node_index(a, n), slack, v, node.held);
     if (node.contact || node.held.any()) found.push_back(node);
   }
 }

@@ -3,7 +3,8 @@
 // A block falls asleep when none of its particles has been faster than `speed` for the time `calm`, and loses what
 // velocity it has. It wakes when a node that its particles reach moves faster than that, and in any case after the time
 // `nap`: a force out of balance that the nodes show only as velocity over a step is felt then, for soil that has lost
-// its support is faster than `speed` well before `calm` is over. Asleep, a block sets no time step.
+// its support is faster than `speed` well before `calm` is over. Asleep, a block's wave speed still limits the time
+// step: it may wake, and strain, in any step.
 //
 // One clock per occupied block says all: the time (s) that the block has been calm, or minus the time until it wakes.
 #pragma once

@@ -48,8 +48,15 @@ struct SolverOptions {
 
 // Work done since the start, J (per metre in plane strain), each counted as energy taken from the particles except
 // `external` and `pore_pressure` (frozen pore water pushing expanding soil), which were given to them.
+//
+// `transfer` is the kinetic energy lost between particles and nodes, both ways: sum m v^2 / 2 of the particles before
+// P2G minus that of the nodes, plus that of the nodes at the end of the step minus that of the particles after G2P.
+// `impact` is what contact impulses J took beside friction: minus J . (v + v') / 2, with the node's velocities before
+// and after the step, less friction's share. Both are NaN where momentum and forces come to the nodes as one sum, from
+// which the nodes' velocity before the step cannot be told (APIC without damping, FMPM).
 struct WorkDone {
   double plastic = 0.0, friction = 0.0, damping = 0.0, external = 0.0, removed = 0.0, pore_pressure = 0.0;
+  double transfer = 0.0, impact = 0.0;
 };
 
 // Wall-clock seconds by phase since the start.
@@ -82,6 +89,7 @@ struct SolverState {
   double next_dt = 0.0, viscous_limit = 0.0;  // s
   double drift = 0.0;                         // cells, since the last sort
   double fastest_wave = 0.0;                  // m/s
+  double kinetic = 0.0;                       // J
   long sorts = 0;
   WorkDone work;
   PhaseSeconds seconds;
@@ -115,6 +123,9 @@ class Solver {
   virtual const WorkDone& work() const = 0;
   virtual const PhaseSeconds& seconds() const = 0;
   virtual double elastic_energy() const = 0;  // J
+  // The particle with the largest kinetic and elastic energy per mass, or one whose energy is not finite, in words for
+  // a message: identity, material, position, speed, both energies.
+  virtual std::string most_energetic() const = 0;
   virtual double unbalanced_force_ratio(const std::array<double, Dim>& body) const = 0;
   virtual std::array<double, Dim> boundary_impulse() const = 0;   // N s since the start, on the particles
   virtual const std::vector<BodyState<Dim>>& bodies() const = 0;  // in the order of Walls::bodies

@@ -79,6 +79,9 @@ TEST_CASE("a run that was interrupted twice and went on leaves the same bytes as
   SUBCASE("blocks that sleep") {
     text.insert(text.rfind('}'), R"(, "sleep": {"speed": 3.5, "calm": 0.03, "nap": 0.05})");
   }
+  SUBCASE("FMPM") {
+    text.insert(text.rfind('}'), R"(, "scheme": {"transfer": "fmpm"})");
+  }
   run(folder, "whole", false, 0, text);
   CHECK_THROWS_WITH_AS(run(folder, "parts", false, 37, text), doctest::Contains("checkpoint.h5"), ComputationError);
   CHECK_THROWS_WITH_AS(run(folder, "parts", true, 111, text), doctest::Contains("run again"), ComputationError);
@@ -101,7 +104,7 @@ TEST_CASE("a run that was interrupted twice and went on leaves the same bytes as
     CHECK(a.plastic_deviatoric_strain == b.plastic_deviatoric_strain);
   }
   const bool slept = text_of(folder / "parts/summary.json").find("\"share_asleep\": 0.0,") == std::string::npos;
-  CHECK(slept == (text != case_text));
+  CHECK(slept == (text.find("sleep") != std::string::npos));
   CHECK_FALSE(std::filesystem::exists(folder / "parts/checkpoint.h5"));
 }
 

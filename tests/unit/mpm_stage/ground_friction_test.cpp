@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "mpm_stage/boundary/ground_friction.hpp"
 #include "mpm_stage/step/solver.hpp"
 
 using namespace tailrun::mpm;
@@ -67,4 +68,24 @@ TEST_CASE("a sliding block loses friction times its weight on the plane, no more
   const Slide slide = slide_of_block(35.0, 0.6);
   CHECK(slide.speed == doctest::Approx(0.3 * a).epsilon(0.02));
   CHECK(slide.distance == doctest::Approx(0.5 * slide.speed + 0.5 * a * 0.25).epsilon(0.01));
+}
+
+TEST_CASE("a node remembers its push for the time of a wave through 7 cells, and not where it slides fast") {
+  NodeContact contact;
+  contact.count = 1;
+  contact.point[0] = {};
+  contact.point[0].normal = {0.0, 1.0};
+  constexpr double mass = 3.0, dt = 0.01, wave = 0.5;  // cells a step
+  const auto remembered = [&](double slip, int steps) {
+    double smoothed = 2.0;
+    NodeGrip grip;
+    for (int i = 0; i < steps; ++i) {
+      grip = {mass, 6.0 * mass * dt, {0.0, 1.0}};  // pushed three times as hard from now on
+      smooth_grip(contact, mass, dt, smoothing_share(wave, slip), smoothed, grip);
+    }
+    return grip.capacity / (mass * dt);
+  };
+  CHECK(remembered(0.0, 14) == doctest::Approx(6.0 - 4.0 * std::pow(1.0 - 0.5 / 7.0, 14)));
+  CHECK(remembered(0.004 * wave, 7) == doctest::Approx(6.0 - 4.0 * std::pow(1.0 - 1.0 / 7.0, 7)));
+  CHECK(remembered(0.02 * wave, 1) == 6.0);
 }

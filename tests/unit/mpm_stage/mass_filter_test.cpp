@@ -239,6 +239,57 @@ TEST_CASE("energy of a body that bounces on rough ground does not grow at couran
   }
 }
 
+namespace {
+
+Walls<2> frictional_floor(double friction) {
+  Walls<2> walls;
+  walls.bounded = true;
+  walls.low = {-10.0, 0.0};
+  walls.high = {30.0, 10.0};
+  walls.side[1][0] = {WallKind::frictional, friction};
+  return walls;
+}
+
+}  // namespace
+
+TEST_CASE("a block slides on a frictional wall with the friction that its weight makes") {
+  constexpr double friction = 0.4 * 9.81, end = 0.3;
+  const auto speed_after = [&](double speed, double push) {
+    Particles<2> P = block<2>({32, 8, 1}, 0.0);
+    for (double& v : P.velocity[0]) v = speed;
+    for (std::size_t p = 0; p < P.count(); ++p) P.stress[1][p] = -2000.0 * 9.81 * (1.0 - P.position[1][p]);
+    auto s = started<2>(fmpm(4), std::move(P), {}, frictional_floor(0.4));
+    double time = 0.0;
+    while (time < end) time += s->step({0, -9.81}, {push, 0}, end - time > 0.0 ? end - time : 1e30).dt;
+    for (const double y : s->particles().position[1]) CHECK(y > 0.0);
+    CHECK(-s->boundary_impulse()[0] == doctest::Approx(0.4 * s->boundary_impulse()[1]).epsilon(0.015));
+    return momentum(s->particles(), 0) / (32 * 8 * spacing * spacing * 2000.0);
+  };
+  CHECK(std::fabs(speed_after(2.0, 0.0) - (2.0 - end * friction)) < 0.03 * end * friction);
+  CHECK(std::fabs(speed_after(1.0, 1.5 * friction) - (1.0 + 0.5 * end * friction)) < 0.03 * end * friction);
+}
+
+TEST_CASE("energy of a body that bounces on a frictional wall does not grow at courant 0.9, whatever the order") {
+  for (const int order : {2, 4, 6}) {
+    CAPTURE(order);
+    Particles<2> P = block<2>({16, 8, 1}, 0.1);
+    for (double& v : P.velocity[0]) v = 0.5;
+    for (double& v : P.velocity[1]) v = -1.0;
+    SolverOptions o = fmpm(order);
+    o.courant = 0.9;
+    auto s = started<2>(o, std::move(P), {}, frictional_floor(0.5));
+    const double start = energy(*s, 9.81), momentum_before = momentum(s->particles(), 1);
+    double time = 0.0;
+    for (int i = 0; i < 1000; ++i) {
+      time += s->step({0, -9.81}, {0, 0}, 1e30).dt;
+      if (i % 50 == 0) CHECK(energy(*s, 9.81) < start * (1.0 + 1e-6));
+    }
+    const double weight = 9.81 * 2000.0 * 16 * 8 * spacing * spacing;
+    CHECK(s->boundary_impulse()[1] ==
+          doctest::Approx(momentum(s->particles(), 1) - momentum_before + weight * time).epsilon(1e-10));
+  }
+}
+
 TEST_CASE("the impulse on a moving body is what the material has lost") {
   Walls<2> walls;
   walls.bounded = true;
@@ -257,6 +308,8 @@ TEST_CASE("the impulse on a moving body is what the material has lost") {
     CHECK(momentum(s->particles(), d) > 1.0);
     CHECK(momentum(s->particles(), d) == doctest::Approx(-s->bodies()[0].impulse[d]).epsilon(1e-11));
   }
+  const auto& impulse = s->bodies()[0].impulse;
+  CHECK(s->work().external == doctest::Approx(-0.2 * impulse[0] - 0.1 * impulse[1]).epsilon(1e-11));
 }
 
 TEST_CASE("held directions are taken off what is added, in any order and number") {
@@ -270,4 +323,22 @@ TEST_CASE("held directions are taken off what is added, in any order and number"
   held.release(v);
   CHECK(std::fabs(v[0]) < 1e-15);
   CHECK(v[2] == 3.0);
+}
+
+TEST_CASE("a frictional wall holds the normal of what touches it, and all of what friction has stopped") {
+  WallNodes<2> walls;
+  walls.side[1][0] = {WallKind::frictional, 0, 0.4};
+  const auto released = [&](std::array<int, 2> node, std::array<double, 2> v, double friction) {
+    walls.side[1][0].friction = friction;
+    HeldDirections<2> held;
+    hold_by_walls<2>(walls, node, 1e-9, v, held);
+    std::array<double, 2> change = {1.0, 2.0};
+    held.release(change);
+    return change;
+  };
+  CHECK(released({5, 1}, {0.0, 0.0}, 0.4) == std::array<double, 2>{1.0, 2.0});   // above the wall
+  CHECK(released({5, 0}, {0.3, 0.1}, 0.4) == std::array<double, 2>{1.0, 2.0});   // coming off
+  CHECK(released({5, 0}, {0.3, 0.0}, 0.4) == std::array<double, 2>{1.0, 0.0});   // sliding
+  CHECK(released({5, -1}, {0.0, 0.0}, 0.4) == std::array<double, 2>{0.0, 0.0});  // at rest
+  CHECK(released({5, 0}, {0.0, 0.0}, 0.0) == std::array<double, 2>{1.0, 0.0});   // at rest without friction
 }
