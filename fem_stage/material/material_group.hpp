@@ -3,8 +3,10 @@
 // functions; indices are those of the group, stresses and strains tension positive.
 #pragma once
 
+#include <array>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "fem_stage/material/internal_variables.hpp"
@@ -22,6 +24,9 @@ struct StrainIncrement {
   double xy = 0.0;  // engineering shear
   bool operator==(const StrainIncrement&) const = default;
 };
+
+// Points that are updated in one call at most: enough to keep the lanes of PM4 busy, few enough to share out the work.
+constexpr std::size_t update_block = 32;
 
 // What a point knows about its stage; saved with its state.
 struct PointStage {
@@ -100,28 +105,48 @@ class Pm4Group {
     const double index = law.index0 + law.index_slope * state.volumetric_strain;
     const Pm4Surfaces surfaces = law.surfaces(constants_[i], std::max(state.v.p, constants_[i].p_min), index);
     const Pm4Moduli moduli = moduli_of(law, constants_[i], surfaces, state.v.p, state.v.s, state.v.z_cum);
-    committed_[i].G = moduli.G;
-    committed_[i].K = moduli.K;
+    committed_[i].set(surfaces, moduli);
     reset_trial(i);
   }
 
-  // Returns sub-steps, -1 when the increment could not be integrated.
-  long update(std::size_t i, const StrainIncrement& e) {
-    if (e == last_strain_[i]) return 0;  // the trial state is already this increment's
-    last_strain_[i] = e;
-    if (e == StrainIncrement{}) {
-      trial_[i] = committed_[i];
-      return 0;
+  // Trial states of the points from `first` on, at most update_block of them. `substeps` of each: 0 when nothing was to
+  // do, -1 when the increment could not be integrated.
+  void update(std::size_t first, std::span<const StrainIncrement> increment, std::span<long> substeps) {
+    std::array<Pm4Update, update_block> updates;
+    std::array<std::size_t, update_block> point_of;
+    std::size_t count = 0;
+    const auto integrate = [&] {
+      if (count == 0) return;
+      trial_updates(*law_[point_of[0]], options_, std::span(updates.data(), count));
+      for (std::size_t k = 0; k < count; ++k)
+        substeps_[point_of[k]] = substeps[point_of[k] - first] = updates[k].substeps;
+      count = 0;
+    };
+    for (std::size_t k = 0; k < increment.size(); ++k) {
+      const std::size_t i = first + k;
+      const StrainIncrement& e = increment[k];
+      substeps[k] = 0;
+      if (e == last_strain_[i]) continue;  // the trial state is already this increment's
+      last_strain_[i] = e;
+      if (e == StrainIncrement{}) {
+        trial_[i] = committed_[i];
+        continue;
+      }
+      if (!std::isfinite(e.xx + e.yy + e.xy)) {
+        substeps[k] = -1;
+        continue;
+      }
+      const PlaneStrain strain{-(e.xx + e.yy), {-0.5 * (e.xx - e.yy), -0.5 * e.xy}};
+      if (stage_[i].plastic == 0.0) {
+        elastic_stage_update(*law_[i], stage_[i].poisson, committed_[i], strain, trial_[i]);
+        substeps[k] = 1;
+        continue;
+      }
+      if (count > 0 && law_[i] != law_[point_of[0]]) integrate();
+      point_of[count] = i;
+      updates[count++] = {&constants_[i], &committed_[i], strain, &trial_[i], 0};
     }
-    if (!std::isfinite(e.xx + e.yy + e.xy)) return -1;
-    const PlaneStrain strain{-(e.xx + e.yy), {-0.5 * (e.xx - e.yy), -0.5 * e.xy}};
-    if (stage_[i].plastic == 0.0) {
-      elastic_stage_update(*law_[i], stage_[i].poisson, committed_[i], strain, trial_[i]);
-      return 1;
-    }
-    const long substeps = trial_update(*law_[i], constants_[i], options_, committed_[i], strain, trial_[i]);
-    substeps_[i] = substeps;
-    return substeps;
+    integrate();
   }
   PlaneStrainStress trial_stress(std::size_t i) const { return stress(i, trial_[i]); }
   PlaneStrainStress committed_stress(std::size_t i) const { return stress(i, committed_[i]); }
@@ -232,6 +257,9 @@ class ElasticPlasticGroup {
     reset_trial(i);
   }
   void refresh_moduli(std::size_t) {}
+  void update(std::size_t first, std::span<const StrainIncrement> increment, std::span<long> substeps) {
+    for (std::size_t k = 0; k < increment.size(); ++k) substeps[k] = update(first + k, increment[k]);
+  }
   long update(std::size_t i, const StrainIncrement& e) {
     if (e == last_strain_[i]) return 0;
     last_strain_[i] = e;

@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -155,27 +156,36 @@ UpdateReport MaterialPoints::update(std::span<const double> strain_increment, st
   const auto start = std::chrono::steady_clock::now();
   long substeps = 0;
   int failed = std::numeric_limits<int>::max();
-  // Liquefied points cost a hundred times a settled one, so work is handed out in small chunks; every point's result is
-  // its own, so the order does not matter. A handful of points is not worth waking the other threads.
+  // Liquefied points cost a hundred times a settled one, so work is handed out in small blocks; every point's result is
+  // its own, so the order does not matter. A single block is not worth waking the other threads.
   groups_->for_each_group([&](auto& group, const std::vector<std::size_t>& points) {
-    const long count = static_cast<long>(points.size());
-    const auto update_point = [&](long i, long& work, int& first_failure) {
-      const std::size_t point = points[static_cast<std::size_t>(i)];
-      const double* e = strain_increment.data() + 3 * point;
-      const long done = group.update(static_cast<std::size_t>(i), {e[0], e[1], e[2]});
-      if (done < 0) {
-        first_failure = std::min(first_failure, static_cast<int>(point));
-      } else {
-        work += done;
+    const auto update_points = [&](long block, long& work, int& first_failure) {
+      const std::size_t first = update_block * static_cast<std::size_t>(block);
+      const std::size_t count = std::min(update_block, points.size() - first);
+      std::array<StrainIncrement, update_block> strain;
+      std::array<long, update_block> done;
+      for (std::size_t k = 0; k < count; ++k) {
+        const double* e = strain_increment.data() + 3 * points[first + k];
+        strain[k] = {e[0], e[1], e[2]};
       }
-      store(group.trial_stress(static_cast<std::size_t>(i)), effective_stress, point);
+      group.update(first, std::span(strain.data(), count), std::span(done.data(), count));
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t point = points[first + k];
+        if (done[k] < 0) {
+          first_failure = std::min(first_failure, static_cast<int>(point));
+        } else {
+          work += done[k];
+        }
+        store(group.trial_stress(first + k), effective_stress, point);
+      }
     };
-    if (count <= 32) {
-      for (long i = 0; i < count; ++i) update_point(i, substeps, failed);
+    const long blocks = static_cast<long>((points.size() + update_block - 1) / update_block);
+    if (blocks <= 1) {
+      if (blocks == 1) update_points(0, substeps, failed);
       return;
     }
-#pragma omp parallel for schedule(dynamic, 8) reduction(+ : substeps) reduction(min : failed)
-    for (long i = 0; i < count; ++i) update_point(i, substeps, failed);
+#pragma omp parallel for schedule(dynamic, 1) reduction(+ : substeps) reduction(min : failed)
+    for (long block = 0; block < blocks; ++block) update_points(block, substeps, failed);
   });
   UpdateReport report;
   report.substeps = substeps;

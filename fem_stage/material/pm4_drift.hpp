@@ -37,7 +37,8 @@ void correct_drift(const Law& law, const Pm4PointConstants& point, const Pm4Memo
     M_b = surfaces.M_b;
     const Deviator n = cone_normal(v.p, v.s, v.alpha);
     const double n_r = contract(n, v.s) / p;
-    const Pm4Coefficients c = coefficients(law, point, memory, z_peak, v, surfaces, drift.moduli, n);
+    const Pm4Coefficients c =
+        coefficients(law, Pm4PlaceOf<double>{point, memory, z_peak, v, surfaces, drift.moduli, n});
     const double size_B = std::fabs(c.B);
     const double hardening = size_B < 1e-10 ? 1e10 : c.H / (p_star * std::sqrt(size_B));  // (2/3) h
     const Deviator b = sqrt_half * (surfaces.M_b - law.m) * n - v.alpha;

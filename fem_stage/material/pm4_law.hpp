@@ -21,18 +21,6 @@ enum class Pm4Compatibility { improved, opensees };
 // equal (to 5e-8 p_A), as OpenSees' PM4Silt does.
 enum class Pm4BoundingClip { always, simple_shear };
 
-struct Pm4Surfaces {
-  double xi = 0.0;   // relative state parameter: xi_R (sand), xi_s = xi/lambda (silt)
-  double M_b = 0.0;  // bounding ratio q/p
-  double M_d = 0.0;  // dilatancy ratio q/p
-};
-
-struct Pm4Moduli {
-  double G = 0.0;
-  double K = 0.0;
-  double M_cur = 0.0;  // q/max(p, p_min)
-};
-
 // Resolved constants of one material. SI units.
 struct Pm4Law {
   double density = 0.0;
@@ -62,13 +50,16 @@ inline double bulk_over_shear_of(double poisson) {
   return 2.0 / 3.0 * (1.0 + nu) / (1.0 - 2.0 * nu);
 }
 
-inline double macaulay(double x) {
-  return x > 0.0 ? x : 0.0;
+template <class Real>
+inline Real macaulay(Real x) {
+  return select(x > 0.0, x, 0.0);
 }
-inline double square(double x) {
+template <class Real>
+inline Real square(Real x) {
   return x * x;
 }
-inline double cube(double x) {
+template <class Real>
+inline Real cube(Real x) {
   return x * x * x;
 }
 
@@ -86,15 +77,15 @@ inline double yield_function(double m, double p, Deviator s, Deviator alpha) {
 }
 
 // Elastic moduli of a state (pm4 manuals: stress, stress ratio and fabric dependence).
-template <class Law>
-inline Pm4Moduli moduli_of(const Law& law, const Pm4PointConstants& point, const Pm4Surfaces& surfaces, double p,
-                           Deviator s, double z_cum) {
-  const double p_star = std::max(p, point.p_min);
-  Pm4Moduli moduli;
-  moduli.M_cur = sqrt_two * norm(s) / p_star;
-  const double ratio = std::min(1.0, square(square(moduli.M_cur / surfaces.M_b)));
-  const double fabric = z_cum / point.z_max;
-  moduli.G = law.modulus_at(p_star) * (1.0 - 0.5 * ratio) * (1.0 + fabric) / (1.0 + law.C_GD * fabric);
+template <class Law, class Real>
+inline Pm4ModuliOf<Real> moduli_of(const Law& law, const Pm4PointConstantsOf<Real>& point,
+                                   const Pm4SurfacesOf<Real>& surfaces, Real p, DeviatorOf<Real> s, Real z_cum) {
+  const Real p_star = number::max(p, point.p_min);
+  Pm4ModuliOf<Real> moduli;
+  const Real of_bounding = sqrt_two * norm(s) / (p_star * surfaces.M_b);
+  moduli.M_cur = of_bounding * surfaces.M_b;
+  const Real ratio = number::min(Real(1.0), square(square(of_bounding)));
+  moduli.G = law.modulus_at(p_star) * (1.0 - 0.5 * ratio) * (point.z_max + z_cum) / (point.z_max + law.C_GD * z_cum);
   if (law.post_shaking) moduli.G *= law.post_shaking_factor(point, surfaces, moduli, p_star, z_cum);
   moduli.K = law.bulk_over_shear * moduli.G;
   return moduli;

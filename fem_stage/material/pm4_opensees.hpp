@@ -156,8 +156,7 @@ void finish_step_opensees(const Law& law, const Pm4PointConstants& point, const 
   if (trial.M_b > 0.0) surfaces.M_b = trial.M_b;
   clip_to_bounding_surface(law, point, surfaces.M_b, v);
   const Pm4Moduli moduli = moduli_of(law, point, surfaces, v.p, v.s, v.z_cum);
-  trial.G = moduli.G;
-  trial.K = moduli.K;
+  trial.set(surfaces, moduli);
 }
 
 }  // namespace tailrun::fem

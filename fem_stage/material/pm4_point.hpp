@@ -71,21 +71,32 @@ void initialise(const Law& law, const PlaneStress& stress, bool recompute, Pm4Po
   memory.p_zp = std::max(p0, point.p_min) / 100.0;
   state.z_peak = 1e-5 * point.z_max;
   const Pm4Moduli moduli = moduli_of(law, point, surfaces, v.p, v.s, v.z_cum);
-  state.G = moduli.G;
-  state.K = moduli.K;
+  state.set(surfaces, moduli);
 }
 
-// Trial state for a strain increment since the last commit. Returns sub-steps, -1 for failure (trial is then the
-// committed state).
+// Trial states for strain increments (not zero) since the last commit. Where sub-steps become -1, the increment could
+// not be integrated and the trial state is the committed one.
+template <class Law>
+void trial_updates(const Law& law, const Pm4AdaptiveOptions& options, std::span<Pm4Update> updates) {
+  if (law.compatibility == Pm4Compatibility::opensees) {
+    for (Pm4Update& u : updates) u.substeps = integrate_opensees(law, *u.point, *u.committed, u.strain, *u.trial);
+    return;
+  }
+  integrate_adaptive(law, options, updates);
+  for (Pm4Update& u : updates) {
+    if (u.substeps < 0) *u.trial = *u.committed;
+  }
+}
+
+// One point's. Returns the sub-steps.
 template <class Law>
 long trial_update(const Law& law, const Pm4PointConstants& point, const Pm4AdaptiveOptions& options,
                   const Pm4State& committed, const PlaneStrain& strain, Pm4State& trial) {
-  if (law.compatibility == Pm4Compatibility::opensees) {
-    return integrate_opensees(law, point, committed, strain, trial);
-  }
-  const long substeps = integrate_adaptive(law, point, options, committed, strain, trial);
-  if (substeps < 0) trial = committed;
-  return substeps;
+  trial = committed;
+  if (strain.volumetric == 0.0 && strain.deviator.d == 0.0 && strain.deviator.xy == 0.0) return 0;
+  Pm4Update update{&point, &committed, strain, &trial, 0};
+  trial_updates(law, options, std::span(&update, 1));
+  return update.substeps;
 }
 
 // What is left to do when the trial state is accepted.

@@ -10,14 +10,6 @@ double either(double given, double fallback) {
 }
 }  // namespace
 
-double Pm4SandLaw::post_shaking_factor(const Pm4PointConstants& point, const Pm4Surfaces& surfaces,
-                                       const Pm4Moduli& moduli, double p_star, double z_cum) const {
-  const double below_dilatancy = macaulay(1.0 - moduli.M_cur / surfaces.M_d);
-  const double p_sed = p_sed_o * z_cum / (z_cum + point.z_max) * std::sqrt(std::sqrt(below_dilatancy));
-  if (!(p_sed > 0.0)) return 1.0;
-  return std::min(1.0, F_sed_min + (1.0 - F_sed_min) * p_star / (20.0 * p_sed));
-}
-
 Pm4SandLaw resolve(const Pm4SandParameters& given) {
   Pm4SandLaw law;
   const double D_R = given.relative_density;

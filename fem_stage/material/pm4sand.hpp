@@ -61,18 +61,28 @@ struct Pm4SandLaw : Pm4Law {
   double p_sed_o = 0.0;
 
   // xi_R, M_b, M_d at p* (already >= p_min) and the current relative density.
-  Pm4Surfaces surfaces(const Pm4PointConstants&, double p_star, double relative_density) const {
-    Pm4Surfaces out;
+  template <class Real>
+  Pm4SurfacesOf<Real> surfaces(const Pm4PointConstantsOf<Real>&, Real p_star, Real relative_density) const {
+    Pm4SurfacesOf<Real> out;
     // Bolton's expression has a pole at the crushing pressure (p_A e^Q/100, tens of MPa): stop short of it.
-    out.xi = R / std::max(Q_shifted - std::log(p_star), 0.5) - relative_density;
-    const bool loose = out.xi > 0.0;
-    out.M_b = M * std::exp(-(loose ? n_b_loose : n_b_dense) * out.xi);
-    out.M_d = M * std::exp((loose ? n_d_loose : n_d_dense) * out.xi);
+    out.xi = R / number::max(Q_shifted - number::log(p_star), Real(0.5)) - relative_density;
+    const auto loose = out.xi > 0.0;
+    out.M_b = M * number::exp(-select(loose, Real(n_b_loose), Real(n_b_dense)) * out.xi);
+    out.M_d = M * number::exp(select(loose, Real(n_d_loose), Real(n_d_dense)) * out.xi);
     return out;
   }
-  double modulus_at(double p_star) const { return modulus_factor * std::sqrt(p_star); }
-  double post_shaking_factor(const Pm4PointConstants& point, const Pm4Surfaces& surfaces, const Pm4Moduli& moduli,
-                             double p_star, double z_cum) const;
+  template <class Real>
+  Real modulus_at(Real p_star) const {
+    return modulus_factor * number::sqrt(p_star);
+  }
+  template <class Real>
+  Real post_shaking_factor(const Pm4PointConstantsOf<Real>& point, const Pm4SurfacesOf<Real>& surfaces,
+                           const Pm4ModuliOf<Real>& moduli, Real p_star, Real z_cum) const {
+    const Real below_dilatancy = macaulay(1.0 - moduli.M_cur / surfaces.M_d);
+    const Real p_sed = p_sed_o * z_cum / (z_cum + point.z_max) * number::sqrt(number::sqrt(below_dilatancy));
+    const Real factor = number::min(Real(1.0), F_sed_min + (1.0 - F_sed_min) * p_star / (20.0 * p_sed));
+    return select(p_sed > 0.0, factor, Real(1.0));
+  }
 };
 
 // Defaults filled in. The parameters must be in their ranges (read_material checks them).

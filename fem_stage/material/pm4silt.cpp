@@ -13,14 +13,6 @@ double ratio_of(double degrees) {
 }
 }  // namespace
 
-double Pm4SiltLaw::post_shaking_factor(const Pm4PointConstants& point, const Pm4Surfaces& surfaces,
-                                       const Pm4Moduli& moduli, double p_star, double z_cum) const {
-  const double below_dilatancy = macaulay(1.0 - moduli.M_cur / surfaces.M_d);
-  const double G_min =
-      8.0 * p_star * inverse_lambda / (1.0 + (given.C_G_consolidation - 1.0) * z_cum / (z_cum + point.z_max));
-  return 1.0 - (1.0 - G_min / moduli.G) * std::sqrt(std::sqrt(below_dilatancy));
-}
-
 Pm4SiltLaw resolve(const Pm4SiltParameters& given) {
   Pm4SiltLaw law;
   law.given = given;

@@ -61,23 +61,34 @@ struct Pm4SiltLaw : Pm4Law {
   double modulus_factor = 0.0;
 
   // xi_s = xi/lambda, M_b, M_d at p* and the current void ratio.
-  Pm4Surfaces surfaces(const Pm4PointConstants& point, double p_star, double void_ratio) const {
-    Pm4Surfaces out;
-    const double relative = p_star / point.p_cs;
-    out.xi = (void_ratio - given.void_ratio) * inverse_lambda + std::log(relative) - log_F_su;
-    out.M_b = out.xi >= 0.0 ? M * std::exp(-given.n_b_wet * out.xi)
-                            : M * std::pow((1.0 + C_Mb) / (relative + C_Mb), given.n_b_dry);
-    out.M_d = std::min(sqrt_two, M * std::exp(given.n_d * out.xi));
+  template <class Real>
+  Pm4SurfacesOf<Real> surfaces(const Pm4PointConstantsOf<Real>& point, Real p_star, Real void_ratio) const {
+    Pm4SurfacesOf<Real> out;
+    const Real relative = p_star / point.p_cs;
+    out.xi = (void_ratio - given.void_ratio) * inverse_lambda + number::log(relative) - log_F_su;
+    out.M_b = select(out.xi >= 0.0, M * number::exp(-given.n_b_wet * out.xi),
+                     M * number::pow((1.0 + C_Mb) / (relative + C_Mb), given.n_b_dry));
+    out.M_d = number::min(Real(sqrt_two), M * number::exp(given.n_d * out.xi));
     return out;
   }
-  double modulus_at(double p_star) const { return modulus_factor * std::pow(p_star, given.modulus_exponent); }
-  // C_wet: loose of critical, contraction rises near the bounding surface so that the state moves on to critical.
-  double wet_factor(double B, double xi) const {
-    const double near = 0.02 / B;
-    return std::min(1.0, 1.0 / (1.0 + square(square(near))) + 1.0 / (1.0 + square(10.0 * xi)));
+  template <class Real>
+  Real modulus_at(Real p_star) const {
+    return modulus_factor * number::pow(p_star, given.modulus_exponent);
   }
-  double post_shaking_factor(const Pm4PointConstants& point, const Pm4Surfaces& surfaces, const Pm4Moduli& moduli,
-                             double p_star, double z_cum) const;
+  // C_wet: loose of critical, contraction rises near the bounding surface so that the state moves on to critical.
+  template <class Real>
+  Real wet_factor(Real B, Real xi) const {
+    const Real near = 0.02 / B;
+    return number::min(Real(1.0), 1.0 / (1.0 + square(square(near))) + 1.0 / (1.0 + square(10.0 * xi)));
+  }
+  template <class Real>
+  Real post_shaking_factor(const Pm4PointConstantsOf<Real>& point, const Pm4SurfacesOf<Real>& surfaces,
+                           const Pm4ModuliOf<Real>& moduli, Real p_star, Real z_cum) const {
+    const Real below_dilatancy = macaulay(1.0 - moduli.M_cur / surfaces.M_d);
+    const Real G_min =
+        8.0 * p_star * inverse_lambda / (1.0 + (given.C_G_consolidation - 1.0) * z_cum / (z_cum + point.z_max));
+    return 1.0 - (1.0 - G_min / moduli.G) * number::sqrt(number::sqrt(below_dilatancy));
+  }
 };
 
 // Defaults filled in. The parameters must be in their ranges (read_material checks them).

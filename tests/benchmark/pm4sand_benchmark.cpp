@@ -3,13 +3,16 @@
 //
 //   pm4sand_benchmark --benchmark_filter=improved --benchmark_format=json
 //
-// Rows are named mode/state/direction/increment; counters: substeps per update, us_per_substep.
+// Rows are named mode/state/direction/increment; counters: substeps per update, us_per_substep. `improved` updates one
+// point alone, as an element test does; `improved_block` 32 points at once, as a dam does, with increments up to a
+// tenth apart.
 #include <benchmark/benchmark.h>
 #include <omp.h>
 
 #include <cmath>
 #include <string>
 
+#include "fem_stage/material/material_group.hpp"
 #include "fem_stage/material/material_points.hpp"
 #include "fem_stage/material/pm4_point.hpp"
 
@@ -74,6 +77,27 @@ void update(benchmark::State& bench, Pm4Compatibility mode, State state, double 
                                                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
+void update_many(benchmark::State& bench, State state, double increment) {
+  const Point point(state, Pm4Compatibility::improved);
+  constexpr std::size_t count = tailrun::fem::update_block;
+  std::vector<Pm4State> trial(count);
+  std::vector<Pm4Update> updates;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double gamma = point.direction * increment * (1.0 + 0.1 * static_cast<double>(k) / count);
+    updates.push_back({&point.constants, &point.state, {0.0, {0.0, 0.5 * gamma}}, &trial[k], 0});
+  }
+  long substeps = 0;
+  for (auto _ : bench) {
+    trial_updates(point.law, {}, updates);
+    for (const Pm4Update& u : updates) substeps += u.substeps;
+    benchmark::DoNotOptimize(trial.data());
+  }
+  bench.SetItemsProcessed(static_cast<std::int64_t>(bench.iterations() * count));
+  bench.counters["substeps"] = static_cast<double>(substeps) / static_cast<double>(bench.iterations() * count);
+  bench.counters["us_per_substep"] = benchmark::Counter(1e-6 * static_cast<double>(substeps),
+                                                        benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
 // 4000 points of which every fiftieth flows, as in a dam whose slip has formed.
 void many_points(benchmark::State& bench) {
   omp_set_num_threads(static_cast<int>(bench.range(0)));
@@ -113,6 +137,10 @@ int main(int argc, char** argv) {
                         sign > 0 ? "onward" : "reversed", size);
           benchmark::RegisterBenchmark(name, update, mode, state, sign * size)->Unit(benchmark::kMicrosecond);
         }
+        char name[80];
+        std::snprintf(name, sizeof name, "improved_block/%s/%s/%.0e", states[state], sign > 0 ? "onward" : "reversed",
+                      size);
+        benchmark::RegisterBenchmark(name, update_many, state, sign * size)->Unit(benchmark::kMicrosecond);
       }
     }
   }
