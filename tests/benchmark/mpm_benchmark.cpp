@@ -1,6 +1,7 @@
 // Whole steps of the MPM stage in 2-D: particle-steps per second and core by material, transfer, number of particles
 // and threads; what each feature that a scene may leave out costs; memory per particle; and the shares of this
-// machine's memory bandwidth and multiply-add rate, which a probe measures first.
+// machine's memory bandwidth and multiply-add rate, which a probe measures first. At last a whole run with and without
+// sleeping blocks, with what they change of its outcome.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <omp.h>
@@ -9,6 +10,7 @@
 
 #include "common/error.hpp"
 #include "machine_probe.hpp"
+#include "quiet_bed.hpp"
 #include "stirred_block.hpp"
 
 namespace {
@@ -146,6 +148,25 @@ void add_features() {
   line("cubic", [](BlockOptions& o) { o.solver.shape = mpm::ShapeName::cubic; });
 }
 
+void quiet_bed(benchmark::State& state, const mpm::SleepOptions& sleep) {
+  omp_set_num_threads(1);
+  bench::QuietBedOutcome out;
+  for (auto _ : state) out = bench::run_quiet_bed(sleep);
+  state.counters["front_m"] = out.front;
+  state.counters["moved_mass_kg"] = out.moved_mass;
+  state.counters["share_asleep"] = out.share_asleep;
+  state.counters["particle_steps"] = out.particle_steps;
+}
+
+void add_quiet_bed() {
+  const std::pair<const char*, double> speeds[] = {{"off", 0.0}, {"0.01_m_per_s", 0.01}, {"0.03_m_per_s", 0.03}};
+  for (const auto& [name, speed] : speeds)
+    benchmark::RegisterBenchmark(fmt::format("sleeping_blocks/{}", name).c_str(), quiet_bed,
+                                 mpm::SleepOptions{.speed = speed})
+        ->Iterations(1)
+        ->Unit(benchmark::kMillisecond);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -159,6 +180,7 @@ int main(int argc, char** argv) {
   benchmark::AddCustomContext("multiply_add_Gflops_per_s_core", fmt::format("{:.2f}", 1e-9 * flop_rate));
   add_main_table(most_threads);
   add_features();
+  add_quiet_bed();
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   return 0;
