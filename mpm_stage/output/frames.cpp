@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "common/application.hpp"
+#include "common/error.hpp"
 
 namespace tailrun::mpm {
 
@@ -104,6 +105,9 @@ void FrameWriter::write(ParticleSet set) {
     try {
       write_particles(path, set, provenance_);
       write_index();
+    } catch (const std::filesystem::filesystem_error& error) {
+      error_ =
+          std::make_exception_ptr(ComputationError(fmt::format("cannot write {}: {}", path.string(), error.what())));
     } catch (...) {
       error_ = std::current_exception();
     }
