@@ -89,6 +89,8 @@ def plot_energy(plt, ledger, start, output):
         "damping_J": "damping",
         "external_J": "external work",
         "pore_pressure_J": "work of frozen pore pressure",
+        "transfer_J": "lost between particles and grid",
+        "impact_J": "lost in impacts",
     }
     figure, axis = plt.subplots(figsize=(9, 4.6))
     t = start + ledger["time_s"]
@@ -98,7 +100,7 @@ def plot_energy(plt, ledger, start, output):
         values = ledger[column]
         if "change" in label:
             values = values - values[0]
-        if np.abs(values).max() > 0.0:
+        if np.nanmax(np.abs(values), initial=0.0) > 0.0:
             axis.plot(t, values / 1e6, label=label, lw=1.3)
     axis.plot(t, ledger["residual_J"] / 1e6, "k:", label="residual of the balance")
     axis.axhline(0.0, color="0.6", lw=0.8)

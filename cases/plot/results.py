@@ -18,6 +18,10 @@ def show(value, digits=2):
     return "-" if value is None else f"{value:.{digits}f}" if isinstance(value, float) else str(value)
 
 
+def percent(share):
+    return show(None if share is None else 100.0 * share, 1)
+
+
 def suggestion(window):
     """Value and unit: the time, or why there is none."""
     time = window.get("suggested_transfer_time_s")
@@ -55,7 +59,8 @@ def collect(results, phase):
             ("MPM", "front of what flowed, x", show(mpm.get("flow_front_position_m"), 1), "m"),
             ("MPM", "mass that flowed, per m of dam", show(mpm.get("flowed_mass_kg", 0.0) / 1e3, 0), "t"),
             ("MPM", "largest displacement", show(mpm.get("largest_displacement_m"), 1), "m"),
-            ("MPM", "energy balance's residual", f"{mpm.get('energy', {}).get('residual_ratio', 0.0):.1e}", "1"),
+            ("MPM", "energy lost by the scheme, of what turned over", percent(mpm.get("energy", {}).get("lost_ratio")), "%"),
+            ("MPM", "of it in neither transfer nor impacts", percent(mpm.get("energy", {}).get("residual_ratio")), "%"),
             ("MPM", "wall time", show(mpm.get("wall_seconds", {}).get("total"), 1), "s"),
         ]
         if crest[0] is not None:

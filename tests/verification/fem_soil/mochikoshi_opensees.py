@@ -4,8 +4,9 @@
 mochikoshi_opensees.py FEM_STAGE SCENES_FOLDER OUTPUT_FOLDER
 
 Named points: difference of the displacement vectors over the reference's length. r_u: means over layers of 3 m of depth
-through all tailings. From 7.5 s on the slip amplifies rounding, most in the compatible mode: motions that differ by
-1e-9 end up to 20 % apart at 10 s. Compared is therefore the mean of runs whose motions differ by that much.
+through all tailings. From 7.5 s on the slip amplifies the smallest difference: motions that differ by 1e-9 (compatible
+mode) or 1e-5 (improved) end up to 20 % apart at 10 s. Compared is therefore the mean of runs whose motions differ by that
+little, and the quantity says how far one run lies from it; OpenSees' result is one such run.
 
 OpenSees stops at 11.5 s for its cost. Ours goes on to 20 s, with the geometry following the displacement.
 """
@@ -22,7 +23,7 @@ from rows import DATA, MODES, Report, Runner, table
 
 POINTS = ("crest", "mid_face", "upper_toe", "beach_15", "beach_200", "starter_toe", "base_crest")
 LAYER = 3.0  # m
-SCALES = (0.0, 1e-9, -1e-9)  # of the motion, less 1
+SCALES = (0.0, 1e-5, -1e-5, 1e-4, -1e-4)  # of the motion, less 1
 COLOURS = {"improved": "#c0392b", "opensees": "#2471a3"}
 
 
@@ -82,7 +83,9 @@ def main():
         for t in (5, 10):
             for name in POINTS:
                 found, wanted = at(ours, "time_s", name, t), at(reference, "t_s", name, t)
-                report.add(f"displacement of {name} at {t} s, {MODES[mode]}",
+                lengths = [np.linalg.norm(at(one, "time_s", name, t)) for one in members]
+                spread = np.std(lengths, ddof=1) / np.linalg.norm(wanted)
+                report.add(f"displacement of {name} at {t} s, {MODES[mode]} (one run +-{spread:.1%})",
                            np.linalg.norm(found - wanted) / np.linalg.norm(wanted), 0.10, "OpenSees, same mesh",
                            np.linalg.norm(found), np.linalg.norm(wanted))
             report.add(f"layer means of r_u at {t} s, {MODES[mode]}", max(abs(a - b) for _, a, b in layers[t]), 0.07,
