@@ -59,10 +59,10 @@ def collect(results, phase):
             ("MPM", "front of what flowed, x", show(mpm.get("flow_front_position_m"), 1), "m"),
             ("MPM", "mass that flowed, per m of dam", show(mpm.get("flowed_mass_kg", 0.0) / 1e3, 0), "t"),
             ("MPM", "largest displacement", show(mpm.get("largest_displacement_m"), 1), "m"),
-            ("MPM", "energy lost by the scheme, of what turned over", percent(mpm.get("energy", {}).get("lost_ratio")), "%"),
-            ("MPM", "of it in neither transfer nor impacts", percent(mpm.get("energy", {}).get("residual_ratio")), "%"),
+            ("MPM", "energy lost by the scheme", percent(mpm.get("energy", {}).get("lost_ratio")), "%"),
+            ("MPM", "  not in transfer or impacts", percent(mpm.get("energy", {}).get("residual_ratio")), "%"),
             ("MPM", "wall time", show(mpm.get("wall_seconds", {}).get("total"), 1), "s"),
         ]
         if crest[0] is not None:
-            rows.insert(-2, ("MPM", "crest sinks by", show(crest[0] - crest[1] + 0.0), "m"))
+            rows.insert(-3, ("MPM", "crest sinks by", show(crest[0] - crest[1] + 0.0), "m"))
     return rows
