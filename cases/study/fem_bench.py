@@ -26,7 +26,7 @@ def run(program, case, folder, threads, size=None):
     folder.mkdir(parents=True, exist_ok=True)
     command = [program, "run", str(case), "-o", str(folder), "--quiet", "--threads", str(threads)]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(command + (["--size", size] if size else []), check=True, env={**os.environ, "OMP_WAIT_POLICY": "passive"})
+    subprocess.run(command + (["--size", size] if size else []), check=True, env={"GOMP_SPINCOUNT": "10000", **os.environ})
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     quality = np.genfromtxt(folder / "quality.csv", delimiter=",", names=True, deletechars="")
     processor = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <gmsh.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,13 +17,16 @@ constexpr int gmsh_line = 1, gmsh_quad = 3, gmsh_point = 15;
 // gmsh's library has one global state; this owns it for the length of a call.
 class Session {
  public:
-  Session() {
+  Session() : threads_(omp_get_max_threads()) {
     gmsh::initialize();
     gmsh::option::setNumber("General.Terminal", 0);
     gmsh::option::setNumber("General.NumThreads", 1);  // the same mesh on every machine
     gmsh::logger::start();
   }
-  ~Session() { gmsh::finalize(); }
+  ~Session() {
+    gmsh::finalize();
+    omp_set_num_threads(threads_);  // gmsh sets OpenMP's number for the whole program
+  }
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
@@ -34,6 +38,9 @@ class Session {
       if (line.rfind("Error", 0) == 0) text += (text.empty() ? "" : "; ") + line;
     return text;
   }
+
+ private:
+  int threads_;
 };
 
 void open_or_throw(const std::filesystem::path& path) {
