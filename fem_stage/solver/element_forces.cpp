@@ -220,13 +220,11 @@ void ElementForces::matrix(std::size_t e, double mass_factor, double stiffness_f
 double ElementForces::damping_power(std::size_t e, std::span<const double> velocity) const {
   if (damping_ == 0.0) return 0.0;
   const SspQuadUp& el = elements();
-  double local[8], stiffness[64], power = 0.0;
-  for (std::size_t a = 0; a < 4; ++a)
-    for (std::size_t i = 0; i < 2; ++i)
-      local[2 * a + i] = velocity[2 * static_cast<std::size_t>(model_.mesh.quads[4 * e + a]) + i];
-  sspquadup_stiffness(el, e, bulk_[e], shear_[e], hourglass_modulus(e), stiffness);
-  for (std::size_t a = 0; a < 8; ++a)
-    for (std::size_t b = 0; b < 8; ++b) power += local[a] * stiffness[8 * a + b] * local[b];
+  const auto [vxx, vyy, vxy, qx, qy] = centre_gradient(el, model_.mesh.quads.data(), velocity, e);
+  const double c11 = bulk_[e] + 4.0 / 3.0 * shear_[e], c12 = bulk_[e] - 2.0 / 3.0 * shear_[e];
+  const double *f = &el.hourglass[3 * e], g = hourglass_modulus(e);
+  const double power = el.volume[e] * (c11 * (vxx * vxx + vyy * vyy) + 2.0 * c12 * vxx * vyy + shear_[e] * vxy * vxy) +
+                       g * (f[0] * qx * qx + 2.0 * f[1] * qx * qy + f[2] * qy * qy);
   return damping_ * power;
 }
 
