@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "common/application.hpp"
+#include "mpm_stage/output/csv_cell.hpp"
 
 namespace tailrun::mpm {
 
@@ -135,10 +136,11 @@ void FrontSeries<Dim>::write(const std::filesystem::path& path) const {
   for (const auto& p : output_.points) text += fmt::format(",{0}_x_m,{0}_y_m", p.name);
   text += "\n";
   for (const auto& r : rows_) {
-    text += fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", r.time, r.front,
-                        r.robust_front, r.top, r.centre_x, r.centre_y, r.rms_speed, r.maximum_speed, r.flow_front,
-                        r.flowed_mass);
-    for (const double x : r.points) text += fmt::format(",{:.9g}", x);
+    text += fmt::format("{:.9g}", r.time);
+    for (const double x : {r.front, r.robust_front, r.top, r.centre_x, r.centre_y, r.rms_speed, r.maximum_speed,
+                           r.flow_front, r.flowed_mass})
+      text += csv_cell(x, 9);
+    for (const double x : r.points) text += csv_cell(x, 9);
     text += "\n";
   }
   write_text_file(path.string(), text);

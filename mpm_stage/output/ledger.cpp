@@ -7,6 +7,7 @@
 
 #include "common/application.hpp"
 #include "common/error.hpp"
+#include "mpm_stage/output/csv_cell.hpp"
 
 namespace tailrun::mpm {
 
@@ -68,15 +69,15 @@ void Ledger<Dim>::write(const std::filesystem::path& path) const {
   std::string text =
       "time_s,kinetic_J,elastic_J,gravitational_J,plastic_J,friction_J,damping_J,external_J,pore_pressure_J,transfer_J,"
       "impact_J,residual_J,mass_kg,momentum_x_Ns,momentum_y_Ns,momentum_z_Ns,angular_momentum_Nms\n";
-  for (const auto& r : rows_)
-    text += fmt::format(
-        "{:.9g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.15g},{:.15g}"
-        ",{:.15g},{:.15g}"
-        ",{:.15g}"
-        "\n",
-        r.time, r.kinetic, r.elastic, r.gravitational, r.work.plastic, r.work.friction, r.work.damping, r.work.external,
-        r.work.pore_pressure, r.work.transfer, r.work.impact, r.residual, r.mass, r.momentum[0], r.momentum[1],
-        r.momentum[2], r.angular_momentum);
+  for (const auto& r : rows_) {
+    text += fmt::format("{:.9g}", r.time);
+    for (const double energy : {r.kinetic, r.elastic, r.gravitational, r.work.plastic, r.work.friction, r.work.damping,
+                                r.work.external, r.work.pore_pressure, r.work.transfer, r.work.impact, r.residual})
+      text += csv_cell(energy, 10);
+    for (const double kept : {r.mass, r.momentum[0], r.momentum[1], r.momentum[2], r.angular_momentum})
+      text += csv_cell(kept, 15);
+    text += '\n';
+  }
   write_text_file(path.string(), text);
 }
 

@@ -3,7 +3,10 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <random>
+#include <sstream>
 
 #include "common/error.hpp"
 
@@ -149,6 +152,13 @@ TEST_CASE("FMPM cannot tell transfer and impacts from the residual, and says so"
   Account<2> run(with(TransferName::fmpm), block<2>({24, 16, 1}), 1e6, none, box<2>());
   const LedgerRow& row = run.step(10);
   CHECK(std::isnan(row.work.transfer));
+  const auto path = std::filesystem::temp_directory_path() / "tailrun_ledger_test.csv";
+  run.ledger.write(path);
+  std::stringstream text;
+  text << std::ifstream(path).rdbuf();
+  CHECK(text.str().find(",,,") != std::string::npos);
+  CHECK(text.str().find("nan") == std::string::npos);
+  std::filesystem::remove(path);
   CHECK(row.residual == row.lost);
   CHECK(row.lost > 0.0);
 }

@@ -24,7 +24,7 @@ class Run:
     def series(self, name):
         with open(self.folder / name) as f:
             rows = list(csv.DictReader(f))
-        return {k: np.array([float(r[k]) for r in rows]) for k in rows[0]}
+        return {k: np.array([float(r[k] or "nan") for r in rows]) for k in rows[0]}
 
     def frames(self):
         return sorted((self.folder / "frames").glob("*.vtkhdf"))
