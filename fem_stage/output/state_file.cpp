@@ -144,8 +144,9 @@ void read_state(const std::filesystem::path& path, const Model& model, State& st
         fmt::format("{}: has no restart state (group {}); it was not written by fem_stage", path.string(), restart));
   const auto material = file.doubles(restart + "/material_state");
   if (material.size() != points.save_state().size())
-    throw InputError(
-        fmt::format("{}: was made with other material models. Run the geostatic stage again.", path.string()));
+    throw InputError(fmt::format(
+        "{}: was made with other material models or by another version of fem_stage. Run the geostatic stage again.",
+        path.string()));
   points.restore_state(material);
   state.time = snapshot.time;
   state.displacement = snapshot.displacement;
