@@ -118,8 +118,10 @@ class Pm4Group {
     const auto integrate = [&] {
       if (count == 0) return;
       trial_updates(*law_[point_of[0]], options_, std::span(updates.data(), count));
-      for (std::size_t k = 0; k < count; ++k)
+      for (std::size_t k = 0; k < count; ++k) {
         substeps_[point_of[k]] = substeps[point_of[k] - first] = updates[k].substeps;
+        if (updates[k].substeps < 0) reset_trial(point_of[k]);  // the same increment must fail again
+      }
       count = 0;
     };
     for (std::size_t k = 0; k < increment.size(); ++k) {
@@ -134,6 +136,7 @@ class Pm4Group {
       }
       if (!std::isfinite(e.xx + e.yy + e.xy)) {
         substeps[k] = -1;
+        reset_trial(i);
         continue;
       }
       const PlaneStrain strain{-(e.xx + e.yy), {-0.5 * (e.xx - e.yy), -0.5 * e.xy}};
@@ -262,8 +265,11 @@ class ElasticPlasticGroup {
   }
   long update(std::size_t i, const StrainIncrement& e) {
     if (e == last_strain_[i]) return 0;
+    if (!std::isfinite(e.xx + e.yy + e.xy)) {
+      reset_trial(i);
+      return -1;
+    }
     last_strain_[i] = e;
-    if (!std::isfinite(e.xx + e.yy + e.xy)) return -1;
     const ElasticPlasticLaw& law = *law_[i];
     trial_[i] = committed_[i];
     trial_[i].stress = elastic_stress(committed_[i].stress, law.shear_modulus, stage_[i].poisson, e.xx, e.yy, e.xy);

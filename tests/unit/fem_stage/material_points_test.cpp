@@ -64,6 +64,21 @@ std::vector<double> shaken(MaterialPoints& points, int steps) {
 
 }  // namespace
 
+TEST_CASE("material points: an increment that cannot be integrated fails as often as it is tried") {
+  MaterialPoints points = level_ground(4);
+  std::vector<double> stress(16);
+  for (std::size_t i = 0; i < 4; ++i)
+    for (const double bad : {HUGE_VAL, 1e6})
+      for (int attempt = 0; attempt < 2; ++attempt) {
+        std::vector<double> strain(12, 0.0);
+        strain[3 * i + 2] = bad;
+        const bool adaptive = i >= 2;  // elastic stress and its return to yield take any finite strain
+        CAPTURE(i);
+        CAPTURE(attempt);
+        if (bad == HUGE_VAL || adaptive) CHECK(points.update(strain, stress).failed_point == static_cast<int>(i));
+      }
+}
+
 TEST_CASE("material points: elastic stage with nu = K0/(1 + K0) gives K0, and its moduli are G_0 p_A") {
   MaterialPoints points(four_materials(), {2});
   const double nu = 0.5 / 1.5;
