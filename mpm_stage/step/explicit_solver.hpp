@@ -24,6 +24,7 @@
 #include "mpm_stage/boundary/mirror_walls.hpp"
 #include "mpm_stage/boundary/surface_extension.hpp"
 #include "mpm_stage/grid/tiles.hpp"
+#include "mpm_stage/material/mean_stress_relaxation.hpp"
 #include "mpm_stage/material/stress_update.hpp"
 #include "mpm_stage/step/grid_update.hpp"
 #include "mpm_stage/step/sleeping_blocks.hpp"

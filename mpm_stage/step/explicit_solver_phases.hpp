@@ -285,6 +285,8 @@ StressWork ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses_of(std::
       loaded = true;
       gather_volumetric<Dim, Shape>(P_, run.begin, run.end, corner(b), h1_, relaxation(run.material, dt), mean,
                                     trace.data(), shift.data());
+      if (constants_[run.material].model == Model::tresca)
+        relax_by_used_strength(constants_[run.material], P_, run.begin, run.end, shift.data());
     } else {
       for (std::size_t p = run.begin; p < run.end; ++p) {
         trace[p - run.begin] = trace_of(P_, p);
