@@ -25,7 +25,7 @@ AGAINST = {"rigid_motion": "exact", "spinning_square": "exact", "vibrating_bar":
            "mohr_coulomb_point": "bisection, 1e6 random trials", "strip_footing": "(2 + pi) c, Prandtl 1920",
            "vertical_cut": "3.83 c / gamma, Taylor 1937", "cohesive_block": "itself: time step, cell, energy",
            "bingham_rest": "closed form, shallow limit", "bui_2008": "experiment, Bui et al. 2008",
-           "martin_moyce": "experiment, Martin & Moyce 1952", "column_3d": "experiments, Lube et al. 2004"}
+           "martin_moyce": "experiment, Martin & Moyce 1952; potential flow", "column_3d": "experiments, Lube et al. 2004"}
 
 
 def check_of(name):
