@@ -133,4 +133,79 @@ struct GimpShape {
   }
 };
 
+// What four particles see along one direction: a line's sums of a quantity u over the nodes,
+//   value = sum w u,  slope = sum d u,  moment = sum m u,
+// and what nodes get back, e_k = s d_k or c m_k or both, where slopes and s, moments and c are counted in units of
+// slope_unit and moment_unit.
+struct LineSums {
+  Vec4 value, slope, moment;
+};
+
+template <class Shape>
+struct ShapeAt {
+  static constexpr int support = Shape::support;
+  static constexpr double slope_unit = 1.0, moment_unit = 1.0;
+  Vec4 w[support], d[support], m[support];
+  Vec4 base;  // a whole number
+
+  [[gnu::always_inline]] explicit ShapeAt(Vec4 X) : base(real(Shape::evaluate(X, w, d, m))) {}
+
+  [[gnu::always_inline]] LineSums sums(const Vec4* u) const {
+    LineSums s{};
+    for (int k = 0; k < support; ++k) {
+      s.value += u[k] * w[k];
+      s.slope += u[k] * d[k];
+      s.moment += u[k] * m[k];
+    }
+    return s;
+  }
+  [[gnu::always_inline]] void spread_slope(Vec4 s, Vec4* e) const {
+    for (int k = 0; k < support; ++k) e[k] = s * d[k];
+  }
+  [[gnu::always_inline]] void spread_moment(Vec4 c, Vec4* e) const {
+    for (int k = 0; k < support; ++k) e[k] = c * m[k];
+  }
+  [[gnu::always_inline]] void spread_both(Vec4 s, Vec4 c, Vec4* e) const {
+    for (int k = 0; k < support; ++k) e[k] = s * d[k] + c * m[k];
+  }
+};
+
+// The quadratic B-spline by differences of the three nodes, with f measured from the middle one: S = u_2 - u_0 and D =
+// u_0 - 2 u_1 + u_2 give value = u_1 + f S / 2 + (f^2 / 2 + 1/8) D, slope = (S + 2 f D) / 2 and moment = (S + f (3 - 4
+// f^2) D) / 8. Fewer products, and far fewer numbers to be kept, than with nine weights.
+template <>
+struct ShapeAt<QuadraticShape> {
+  static constexpr double slope_unit = 0.5, moment_unit = 0.125;
+  Vec4 w[3], half_f, half_ff, slope_D, moment_D;
+  Vec4 base;
+
+  [[gnu::always_inline]] explicit ShapeAt(Vec4 X) {
+    const Vec4 centre = truncated(X + 0.5), f = X - centre, ff = f * f;
+    base = centre - 1.0;
+    half_f = 0.5 * f;
+    half_ff = 0.5 * ff + 0.125;
+    w[0] = half_ff - half_f;
+    w[1] = 0.75 - ff;
+    w[2] = half_ff + half_f;
+    slope_D = f + f;
+    moment_D = f * (3.0 - 4.0 * ff);
+  }
+  [[gnu::always_inline]] LineSums sums(const Vec4* u) const {
+    const Vec4 S = u[2] - u[0], D = (u[0] + u[2]) - 2.0 * u[1];
+    return {u[1] + half_ff * D + half_f * S, S + slope_D * D, S + moment_D * D};
+  }
+  [[gnu::always_inline]] void spread_slope(Vec4 s, Vec4* e) const { spread(s, s * slope_D, e); }
+  [[gnu::always_inline]] void spread_moment(Vec4 c, Vec4* e) const { spread(c, c * moment_D, e); }
+  [[gnu::always_inline]] void spread_both(Vec4 s, Vec4 c, Vec4* e) const {
+    spread(s + c, s * slope_D + c * moment_D, e);
+  }
+
+ private:
+  [[gnu::always_inline]] static void spread(Vec4 S, Vec4 D, Vec4* e) {
+    e[0] = D - S;
+    e[1] = -2.0 * D;
+    e[2] = D + S;
+  }
+};
+
 }  // namespace tailrun::mpm

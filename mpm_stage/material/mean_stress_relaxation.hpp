@@ -6,34 +6,33 @@
 // the soil uses: min(1, J2 / (c/2)^2), all of it from half its strength on.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 
+#include "mpm_stage/grid/simd.hpp"
 #include "mpm_stage/material/strength.hpp"
 #include "mpm_stage/scene/particles.hpp"
 
 namespace tailrun::mpm {
 
-// Second invariant of the deviatoric stress of particle p, Pa2.
-template <int Dim>
-inline double second_invariant(const Particles<Dim>& P, std::size_t p) {
-  const double xx = P.stress[0][p], yy = P.stress[1][p], zz = P.stress[2][p];
-  double shear = 0.0;
-  for (int k = 3; k < stress_components<Dim>; ++k) shear += P.stress[k][p] * P.stress[k][p];
-  return ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) * (1.0 / 6.0) + shear;
-}
-
 // Scales shift[0 .. end - begin) (Pa) of the particles begin .. end of a Tresca material before their stress update.
 template <int Dim>
 void relax_by_used_strength(const MaterialConstants& k, const Particles<Dim>& P, std::size_t begin, std::size_t end,
                             double* shift) {
-#pragma omp simd
-  for (std::size_t p = begin; p < end; ++p) {
-    const double c =
-        k.softens ? softened_cohesion(k, P.strength[p], softening_share(k, P.plastic_strain[p])) : P.strength[p];
-    const double used = 4.0 * second_invariant(P, p), full = c * c;
-    shift[p - begin] *= used < full ? used / full : 1.0;
-  }
+  for_each_group(
+      begin, end, [&](const auto& g) __attribute__((always_inline)) {
+        Vec4 c = g.read(P.strength.data());
+        if (k.softens) c = softened_cohesion(k, c, softening_share(k, g.read(P.plastic_strain.data())));
+        const Vec4 xx = g.read(P.stress[0].data()), yy = g.read(P.stress[1].data()), zz = g.read(P.stress[2].data());
+        Vec4 J2 = ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) * (1.0 / 6.0);
+        for (int i = 3; i < stress_components<Dim>; ++i) {
+          const Vec4 s = g.read(P.stress[i].data());
+          J2 += s * s;
+        }
+        const Vec4 used = 4.0 * J2, full = c * c;
+        auto of_run = g;
+        of_run.first -= begin;
+        of_run.write(shift, of_run.read(shift) * (used < full ? used / full : splat(1.0)));
+      });
 }
 
 }  // namespace tailrun::mpm

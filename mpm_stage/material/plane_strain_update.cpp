@@ -1,5 +1,6 @@
-// Stress update in plane strain. The loops have no branches that depend on a particle: what a material does not have
-// (softening, rate terms, tension cut-off) is left out at compile time, and the compiler makes vector code of the rest.
+// Stress update in plane strain, four particles at a time. There are no branches that depend on a particle (but for
+// tension cut-off, seldom met): what a material does not have (softening, rate terms, tension cut-off) is left out at
+// compile time.
 #include <algorithm>
 #include <cmath>
 
@@ -36,114 +37,132 @@ struct Columns {
         shift(shift_of_run) {}
 };
 
-// Mean and deviator of the in-plane trial stress: sxx = p + q, syy = p - q, sxy = r.
+// Mean and deviator of the in-plane trial stress: sxx = p + q, syy = p - q, sxy = r. `volume_ratio` is det F of the
+// averaged increment, 2-D: ((1 + t/4) / (1 - t/4))^2 with t its midpoint trace.
 struct PlaneTrial {
-  double p, q, r, zz, shear_rate_squared;
+  Vec4 p, q, r, zz, shear_rate_squared, volume_ratio;
 };
 
-[[gnu::always_inline]] inline PlaneTrial elastic_trial(const MaterialConstants& k, double gxx, double gxy, double gyx,
-                                                       double gyy, double trace, double shift, double sxx, double syy,
-                                                       double szz, double sxy) {
+template <class G>
+[[gnu::always_inline]] inline PlaneTrial elastic_trial(const MaterialConstants& k, const Columns& c, const G& g) {
+  const Vec4 gxx = g.read(c.gxx), gxy = g.read(c.gxy), gyx = g.read(c.gyx), gyy = g.read(c.gyy);
+  const Vec4 sxx = g.read(c.sxx), syy = g.read(c.syy), sxy = g.read(c.sxy);
+  const Vec4 trace = g.read(c.trace), shift = g.read(c.shift);
   // Hughes & Winget: Q = (I - W/2)^-1 (I + W/2) turns by theta with tan(theta / 2) = w / 2; the deviator turns by 2
-  // theta.
-  const double t = 0.25 * (gyx - gxy), tt = t * t, r1 = 1.0 / (1.0 + tt);
-  const double c = (1.0 - tt) * r1, s = 2.0 * t * r1;
-  const double c2 = c * c - s * s, s2 = 2.0 * c * s;
-  const double q0 = 0.5 * (sxx - syy), p0 = 0.5 * (sxx + syy);
-  const double de = 0.5 * (gxx - gyy), dg = 0.5 * (gxy + gyx);
+  // theta. One division serves the rotation and the change of volume.
+  const Vec4 t = 0.25 * (gyx - gxy), tt = t * t, shrunk = 1.0 - 0.25 * trace;
+  const Vec4 both = 1.0 / ((1.0 + tt) * shrunk), r1 = both * shrunk;
+  const Vec4 cosine = (1.0 - tt) * r1, sine = 2.0 * t * r1;
+  const Vec4 c2 = cosine * cosine - sine * sine, s2 = 2.0 * cosine * sine;
+  const Vec4 q0 = 0.5 * (sxx - syy), p0 = 0.5 * (sxx + syy);
+  const Vec4 de = 0.5 * (gxx - gyy), dg = 0.5 * (gxy + gyx);
+  const Vec4 growth = (1.0 + 0.25 * trace) * (both * (1.0 + tt));
   PlaneTrial o;
   o.p = p0 + (k.lambda + k.mu) * trace + shift;
   o.q = q0 * c2 - sxy * s2 + 2.0 * k.mu * de;
   o.r = q0 * s2 + sxy * c2 + 2.0 * k.mu * dg;
-  o.zz = szz + k.lambda * trace + shift;
+  o.zz = g.read(c.szz) + k.lambda * trace + shift;
   o.shear_rate_squared = 4.0 * (de * de + dg * dg);
+  o.volume_ratio = growth * growth;
   return o;
 }
 
-// det F of the averaged increment, 2-D: ((1 + t/4) / (1 - t/4))^2 with t its midpoint trace.
-inline double volume_ratio(double trace) {
-  const double r = (1.0 + 0.25 * trace) / (1.0 - 0.25 * trace);
-  return r * r;
-}
-
 void linear_elastic(const MaterialConstants& k, const Columns& c, std::size_t n) {
-#pragma omp simd
-  for (std::size_t i = 0; i < n; ++i) {
-    const PlaneTrial t = elastic_trial(k, c.gxx[i], c.gxy[i], c.gyx[i], c.gyy[i], c.trace[i], c.shift[i], c.sxx[i],
-                                       c.syy[i], c.szz[i], c.sxy[i]);
-    c.sxx[i] = t.p + t.q;
-    c.syy[i] = t.p - t.q;
-    c.szz[i] = t.zz;
-    c.sxy[i] = t.r;
-    c.volume[i] *= volume_ratio(c.trace[i]);
-  }
+  for_each_group(
+      0, n, [&](const auto& g) __attribute__((always_inline)) {
+        const PlaneTrial t = elastic_trial(k, c, g);
+        g.write(c.sxx, t.p + t.q);
+        g.write(c.syy, t.p - t.q);
+        g.write(c.szz, t.zz);
+        g.write(c.sxy, t.r);
+        g.write(c.volume, g.read(c.volume) * t.volume_ratio);
+      });
 }
 
 // Plastic strain increment from the stress that the return took away: de = C^-1 (s_trial - s). Returns the work s : de
 // per unit volume and adds to the deviatoric plastic strain.
 struct PlasticWork {
-  double work, strain;
+  Vec4 work, strain;
 };
 
-[[gnu::always_inline]] inline PlasticWork plastic_work(double shear_flexibility, double volume_flexibility, Principal t,
-                                                       Principal s) {
-  const double d1 = t.s1 - s.s1, d2 = t.s2 - s.s2, d3 = t.s3 - s.s3;
-  const double mean = (d1 + d2 + d3) * (1.0 / 3.0), b = mean * volume_flexibility;
-  const double e1 = shear_flexibility * (d1 - mean), e2 = shear_flexibility * (d2 - mean);
-  const double e3 = shear_flexibility * (d3 - mean);
-  return {s.s1 * (e1 + b) + s.s2 * (e2 + b) + s.s3 * (e3 + b), std::sqrt(2.0 / 3.0 * (e1 * e1 + e2 * e2 + e3 * e3))};
+[[gnu::always_inline]] inline PlasticWork plastic_work(double shear_flexibility, double volume_flexibility,
+                                                       const PrincipalOf<Vec4>& t, const PrincipalOf<Vec4>& s) {
+  const Vec4 d1 = t.s1 - s.s1, d2 = t.s2 - s.s2, d3 = t.s3 - s.s3;
+  const Vec4 mean = (d1 + d2 + d3) * (1.0 / 3.0), b = mean * volume_flexibility;
+  const Vec4 e1 = shear_flexibility * (d1 - mean), e2 = shear_flexibility * (d2 - mean);
+  const Vec4 e3 = shear_flexibility * (d3 - mean);
+  return {s.s1 * (e1 + b) + s.s2 * (e2 + b) + s.s3 * (e3 + b), root(2.0 / 3.0 * (e1 * e1 + e2 * e2 + e3 * e3))};
+}
+
+// The lanes of `s` that lie above the tension cut-off, from their trial `t`.
+inline void cut_off(const MaterialConstants& k, Vec4 sin_phi, Vec4 cohesion, const PrincipalOf<Vec4>& t,
+                    PrincipalOf<Vec4>& s) {
+  for (int l = 0; l < 4; ++l) {
+    if (!(s.s1[l] > k.tension)) continue;
+    const Principal r =
+        return_tension_cutoff(k, sin_phi[l], cohesion[l], k.tension, Principal{t.s1[l], t.s2[l], t.s3[l]});
+    s.s1[l] = r.s1;
+    s.s2[l] = r.s2;
+    s.s3[l] = r.s3;
+  }
 }
 
 // Frictional: Mohr-Coulomb, else Tresca. The in-plane principal stresses p +- R and zz are sorted without branches and
 // put back by where zz stood.
 template <bool Frictional, bool Softens, bool Rate, bool Cutoff>
 double elasto_plastic(const MaterialConstants& k, const Columns& c, std::size_t n, double dt) {
-  double dissipated = 0.0;
+  Vec4 dissipated = {};
+  const Vec4 zero = {};
   const double per_dt = dt > 0.0 ? 1.0 / dt : 0.0;
   const MohrCoulombSurface surface = Frictional ? mohr_coulomb_surface(k, k.sin_phi) : MohrCoulombSurface{};
   const double shear_flexibility = 0.5 / k.mu, volume_flexibility = 1.0 / (3.0 * k.bulk);
-  const auto body = [&](std::size_t i) __attribute__((always_inline)) {
-    const PlaneTrial t = elastic_trial(k, c.gxx[i], c.gxy[i], c.gyx[i], c.gyy[i], c.trace[i], c.shift[i], c.sxx[i],
-                                       c.syy[i], c.szz[i], c.sxy[i]);
-    const double R = std::sqrt(t.q * t.q + t.r * t.r);
-    const double a = t.p + R, b = t.p - R, z = t.zz;
-    const Principal trial = {std::max(a, z), std::max(b, std::min(a, z)), std::min(b, z)};
-    double cohesion = c.strength[i], sin_phi = k.sin_phi;
-    if constexpr (Softens) {
-      const double share = softening_share(k, c.strain[i]);
-      cohesion = softened_cohesion(k, cohesion, share);
-      sin_phi = softened_sin_phi(k, share);
-    }
-    if constexpr (Rate) cohesion += rate_strength(k, std::sqrt(t.shear_rate_squared) * per_dt);
-    Principal s;
-    if constexpr (Frictional)
-      s = return_mohr_coulomb(Softens ? mohr_coulomb_surface(k, sin_phi) : surface, cohesion, trial);
-    else
-      s = return_tresca(cohesion, trial);
-    if constexpr (Cutoff) {
-      if (s.s1 > k.tension) s = return_tension_cutoff(k, sin_phi, cohesion, k.tension, trial);
-    }
-    const PlasticWork w = plastic_work(shear_flexibility, volume_flexibility, trial, s);
-    const bool z_first = z > a, z_last = z < b;
-    const double a1 = z_first ? s.s2 : s.s1, b1 = z_last ? s.s2 : s.s3;
-    const double z1 = z_first ? s.s1 : (z_last ? s.s3 : s.s2);
-    const double p1 = 0.5 * (a1 + b1), scale = R > 0.0 ? 0.5 * (a1 - b1) / R : 0.0;
-    const double q1 = t.q * scale;
-    c.sxx[i] = p1 + q1;
-    c.syy[i] = p1 - q1;
-    c.szz[i] = z1;
-    c.sxy[i] = t.r * scale;
-    c.strain[i] += w.strain;
-    c.volume[i] = std::min(c.volume[i] * volume_ratio(c.trace[i]), k.largest_specific_volume * c.mass[i]);
-    return w.work * c.volume[i];
-  };
-  if constexpr (Cutoff) {
-    for (std::size_t i = 0; i < n; ++i) dissipated += body(i);
-  } else {
-#pragma omp simd reduction(+ : dissipated)
-    for (std::size_t i = 0; i < n; ++i) dissipated += body(i);
+  // In two loops over a few particles, not in one: each particle's numbers follow from one another through some 200
+  // cycles, and only where the next particles' do not wait behind them is the core kept busy.
+  constexpr std::size_t few = 64;
+  PlaneTrial trials[few / 4];
+  for (std::size_t first = 0; first < n; first += few) {
+    const std::size_t last = std::min(n, first + few);
+    const auto number = [first](const auto& g) { return (g.first - first) / 4; };
+    for_each_group(
+        first, last, [&](const auto& g) __attribute__((always_inline)) { trials[number(g)] = elastic_trial(k, c, g); });
+    for_each_group(
+        first, last, [&](const auto& g) __attribute__((always_inline)) {
+          const PlaneTrial& t = trials[number(g)];
+          const Vec4 R = root(t.q * t.q + t.r * t.r), per_R = R > zero ? 0.5 / R : zero;
+          const Vec4 a = t.p + R, b = t.p - R, z = t.zz;
+          const PrincipalOf<Vec4> trial = {larger(a, z), larger(b, smaller(a, z)), smaller(b, z)};
+          Vec4 cohesion = g.read(c.strength), sin_phi = splat(k.sin_phi);
+          const Vec4 strain = g.read(c.strain);
+          if constexpr (Softens) {
+            const Vec4 share = softening_share(k, strain);
+            cohesion = softened_cohesion(k, cohesion, share);
+            sin_phi = softened_sin_phi(k, share);
+          }
+          if constexpr (Rate) cohesion += rate_strength<Vec4>(k, root(t.shear_rate_squared) * per_dt);
+          PrincipalOf<Vec4> s;
+          if constexpr (!Frictional)
+            s = return_tresca(cohesion, trial);
+          else if constexpr (Softens)
+            s = return_mohr_coulomb(mohr_coulomb_surface(k, sin_phi), cohesion, trial);
+          else
+            s = return_mohr_coulomb(surface, cohesion, trial);
+          if constexpr (Cutoff) cut_off(k, sin_phi, cohesion, trial, s);
+          const PlasticWork w = plastic_work(shear_flexibility, volume_flexibility, trial, s);
+          const auto z_first = z > a, z_last = z < b;
+          const Vec4 a1 = z_first ? s.s2 : s.s1, b1 = z_last ? s.s2 : s.s3;
+          const Vec4 p1 = 0.5 * (a1 + b1), scale = (a1 - b1) * per_R, q1 = t.q * scale;
+          g.write(c.sxx, p1 + q1);
+          g.write(c.syy, p1 - q1);
+          g.write(c.szz, z_first ? s.s1 : (z_last ? s.s3 : s.s2));
+          g.write(c.sxy, t.r * scale);
+          g.write(c.strain, strain + w.strain);
+          const Vec4 most = k.largest_specific_volume * g.read(c.mass);
+          const Vec4 volume = smaller(g.read(c.volume) * t.volume_ratio, most);
+          g.write(c.volume, volume);
+          dissipated += g.only(w.work * volume);
+        });
   }
-  return dissipated;
+  return sum_of_lanes(dissipated);
 }
 
 template <bool Frictional, bool Cutoff>
@@ -158,21 +177,24 @@ double choose_strength_law(const MaterialConstants& k, const Columns& c, std::si
 
 // Weakly compressible Newtonian fluid: p = K (rho / rho_0 - 1), s = -p I + 2 eta dev(D).
 double newtonian_fluid(const MaterialConstants& k, const Columns& c, std::size_t n, double dt) {
-  double dissipated = 0.0;
-  const double viscous = dt > 0.0 ? 2.0 * k.consistency / dt : 0.0, low = k.allow_tension ? -k.bulk : 0.0;
-#pragma omp simd reduction(+ : dissipated)
-  for (std::size_t i = 0; i < n; ++i) {
-    c.volume[i] *= volume_ratio(c.trace[i] + c.shift[i] / k.bulk);
-    const double pressure = std::max(low, k.bulk * (c.mass[i] / (c.volume[i] * k.reference_density) - 1.0));
-    const double own = c.gxx[i] + c.gyy[i], exx = c.gxx[i] - own / 3.0, eyy = c.gyy[i] - own / 3.0, ezz = -own / 3.0;
-    const double exy = 0.5 * (c.gxy[i] + c.gyx[i]);
-    c.sxx[i] = -pressure + viscous * exx;
-    c.syy[i] = -pressure + viscous * eyy;
-    c.szz[i] = -pressure + viscous * ezz;
-    c.sxy[i] = viscous * exy;
-    dissipated += viscous * (exx * exx + eyy * eyy + ezz * ezz + 2.0 * exy * exy) * c.volume[i];
-  }
-  return dissipated;
+  Vec4 dissipated = {};
+  const double viscous = dt > 0.0 ? 2.0 * k.consistency / dt : 0.0, flexibility = 1.0 / k.bulk;
+  const Vec4 low = splat(k.allow_tension ? -k.bulk : 0.0);
+  for_each_group(
+      0, n, [&](const auto& g) __attribute__((always_inline)) {
+        const Vec4 t = g.read(c.trace) + g.read(c.shift) * flexibility;
+        const Vec4 growth = (1.0 + 0.25 * t) / (1.0 - 0.25 * t), volume = g.read(c.volume) * (growth * growth);
+        const Vec4 pressure = larger(low, k.bulk * (g.read(c.mass) / (volume * k.reference_density) - 1.0));
+        const Vec4 gxx = g.read(c.gxx), gyy = g.read(c.gyy), third = (gxx + gyy) * (1.0 / 3.0);
+        const Vec4 exx = gxx - third, eyy = gyy - third, exy = 0.5 * (g.read(c.gxy) + g.read(c.gyx));
+        g.write(c.volume, volume);
+        g.write(c.sxx, viscous * exx - pressure);
+        g.write(c.syy, viscous * eyy - pressure);
+        g.write(c.szz, -(viscous * third) - pressure);
+        g.write(c.sxy, viscous * exy);
+        dissipated += g.only(viscous * (exx * exx + eyy * eyy + third * third + 2.0 * exy * exy) * volume);
+      });
+  return sum_of_lanes(dissipated);
 }
 
 double update_skeleton(const MaterialConstants& k, const Columns& c, std::size_t n, double dt) {

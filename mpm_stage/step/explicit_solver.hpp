@@ -145,9 +145,8 @@ class ExplicitSolver final : public Solver<Dim> {
   double unbalanced_force_ratio(const std::array<double, Dim>& body) const override;
 
   std::size_t grid_bytes() const override {
-    return grid_.bytes() +
-           (tiles_.capacity() + forces_.capacity() + velocity_.capacity() + change_.capacity()) * sizeof(Vec4) +
-           (term_.capacity() + products_.capacity()) * sizeof(Vec4) +
+    return grid_.bytes() + (tiles_.capacity() + velocity_.capacity() + change_.capacity()) * sizeof(Vec4) +
+           beside_.capacity() * sizeof(SplitNode<Dim>) + (term_.capacity() + products_.capacity()) * sizeof(Vec4) +
            averaged_tiles_.capacity() * sizeof(AveragedNode) + averaged_.capacity() * sizeof(NodeMean);
   }
 
@@ -156,6 +155,8 @@ class ExplicitSolver final : public Solver<Dim> {
   static constexpr int tile_nodes = Tile<Dim, Shape>::nodes;
   static constexpr int block_nodes = Block<Dim>::nodes;
   static constexpr double largest_drift = 0.99;  // cells, of a particle since the last sort: the tiles' margin
+  // Particles that pass through the stress update together: what is known of them fits into the first-level cache.
+  static constexpr std::size_t few_particles = 128;
   // In 2-D a node's four lanes have room for the velocity's change over the step beside the velocity.
   static constexpr bool separate_change = Split && Dim == 3;
 
@@ -229,7 +230,7 @@ class ExplicitSolver final : public Solver<Dim> {
   void scatter_average(std::size_t b);
   void average(bool sorted);
   void update_stresses(double dt);
-  StressWork update_stresses_of(std::size_t b, double dt, std::vector<double>& trace, std::vector<double>& shift);
+  StressWork update_stresses_of(std::size_t b, double dt);
   void particles_to_grid();
   void scatter_block(std::size_t b);
   void scatter_ground_gaps(std::size_t b);
@@ -260,7 +261,8 @@ class ExplicitSolver final : public Solver<Dim> {
   double mass_cutoff_ = 0.0, time_ = 0.0, next_dt_ = 0.0, drift_ = 0.0, fastest_wave_ = 0.0, viscous_limit_ = 1e30;
   std::vector<double> wave_speed_;  // m/s, by material
 
-  AlignedVector<Vec4> tiles_, forces_;     // per occupied block
+  AlignedVector<Vec4> tiles_;              // per occupied block
+  AlignedVector<SplitNode<Dim>> beside_;   // the same, only with Split
   AlignedVector<Vec4> velocity_, change_;  // per active block
   AlignedVector<Vec4> sums_, force_sums_;  // per active block, only with mirrors
   AlignedVector<AveragedNode> averaged_tiles_;

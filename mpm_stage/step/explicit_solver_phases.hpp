@@ -16,12 +16,14 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
   for (const double a : inertial) shaken = shaken || a != 0.0;
   // Nodes at mirrors need their images' sums, so those are complete before any velocity is made.
   const bool whole = needs_all_sums();
+  const bool untouched = !shaken && !wall_nodes_.any_frictional() && !(options_.local_damping > 0.0);
+  Vec4 acceleration = {};
+  for (int d = 0; d < Dim; ++d) acceleration[d] = body[d];
   if (whole) {
 #pragma omp parallel for schedule(dynamic, 4)
-    for (std::size_t a = 0; a < grid_.active(); ++a) {
-      gather_tiles<Dim, Shape>(grid_, a, tiles_.data(), sums_.data() + a * block_nodes);
-      if constexpr (Split) gather_tiles<Dim, Shape>(grid_, a, forces_.data(), force_sums_.data() + a * block_nodes);
-    }
+    for (std::size_t a = 0; a < grid_.active(); ++a)
+      gather_sums<Dim, Shape, Split>(grid_, a, tiles_.data(), beside_.data(), sums_.data() + a * block_nodes,
+                                     Split ? force_sums_.data() + a * block_nodes : nullptr);
     mirrors_.fold(sums_.data());
     if constexpr (Split) mirrors_.fold(force_sums_.data());
     if (extension_.active()) {
@@ -44,11 +46,16 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
       sum = sums_.data() + a * block_nodes;
       force = Split ? force_sums_.data() + a * block_nodes : nullptr;
     } else {
-      gather_tiles<Dim, Shape>(grid_, a, tiles_.data(), own_sum);
-      if constexpr (Split) gather_tiles<Dim, Shape>(grid_, a, forces_.data(), own_force);
+      gather_sums<Dim, Shape, Split>(grid_, a, tiles_.data(), beside_.data(), own_sum, own_force);
+    }
+    const NodeContact* contact = ground_.of_block(a);
+    if (!contact && untouched) {
+      grid_sums_[a] =
+          move_free_nodes<Dim, Split>(dt, acceleration, mass_cutoff_, sum, force, velocity_.data() + a * block_nodes,
+                                      separate_change ? change_.data() + a * block_nodes : nullptr);
+      continue;
     }
     GridSums<Dim> sums;
-    const NodeContact* contact = ground_.of_block(a);
     Gap gap[block_nodes];
     if (contact) {
       gather_tiles<Dim, Shape>(grid_, a, gap_tiles_.data(), gap);
@@ -138,7 +145,11 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& 
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t b = 0; b < grid_.occupied(); ++b) {
     Vec4 tile[tile_nodes], change[Flip && separate_change ? tile_nodes : 1];
-    load_tile<Dim, Shape>(grid_, b, velocity_.data(), tile);
+    if constexpr (Dim == 2 && !Flip)
+      load_tile<Dim, Shape>(grid_, b, velocity_.data(), tile, [](Vec4 v) { return twice(v); });
+    else
+      load_tile<Dim, Shape>(grid_, b, velocity_.data(), tile);
+    if (averaging_) will_write(averaged_tiles_.data() + b * tile_nodes, tile_nodes);
     BlockMotion motion;
     if (sleep_.asleep(b) && sleeps_on(b, tile, dt)) {
       motion_[b] = BlockMotion{.wave = wave_speed_in(b), .asleep = true};
@@ -244,21 +255,18 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::average(bool sorted) {
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses(double dt) {
   const auto since = Clock::now();
-#pragma omp parallel
-  {
-    std::vector<double> trace, shift;
-#pragma omp for schedule(dynamic, 4)
-    for (std::size_t b = 0; b < grid_.occupied(); ++b) {
-      if (sleep_.asleep(b)) {
-        stress_work_[b] = {};
-        if (!sleep_.stale(b)) continue;
-        sleep_.put_on_nodes(b);
-        scatter_block(b);
-        continue;
-      }
-      stress_work_[b] = update_stresses_of(b, dt, trace, shift);
-      if (std::isfinite(stress_work_[b].dissipated)) scatter_block(b);
+#pragma omp parallel for schedule(dynamic, 4)
+  for (std::size_t b = 0; b < grid_.occupied(); ++b) {
+    if (sleep_.asleep(b)) {
+      stress_work_[b] = {};
+      if (!sleep_.stale(b)) continue;
+      sleep_.put_on_nodes(b);
+      scatter_block(b);
+      continue;
     }
+    will_write(tiles_.data() + b * tile_nodes, tile_nodes);
+    stress_work_[b] = update_stresses_of(b, dt);
+    if (std::isfinite(stress_work_[b].dissipated)) scatter_block(b);
   }
   for (std::size_t b = 0; b < grid_.occupied(); ++b) {
     if (!std::isfinite(stress_work_[b].dissipated))
@@ -271,35 +279,30 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses(double dt) {
 }
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
-StressWork ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses_of(std::size_t b, double dt,
-                                                                           std::vector<double>& trace,
-                                                                           std::vector<double>& shift) {
-  NodeMean mean[tile_nodes];
+StressWork ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses_of(std::size_t b, double dt) {
+  Vec4 mean[tile_nodes];
   bool loaded = false;
   StressWork work;
+  double trace[few_particles], shift[few_particles];
   for (const Run& run : grid_.runs(b)) {
-    trace.resize(std::max(trace.size(), run.end - run.begin));
-    shift.resize(trace.size());
-    if (constants_[run.material].averaged) {
-      if (!loaded) load_tile<Dim, Shape>(grid_, b, averaged_.data(), mean);
+    const MaterialConstants& k = constants_[run.material];
+    if (k.averaged && !loaded) {
+      load_tile<Dim, Shape>(grid_, b, averaged_.data(), mean, [](NodeMean m) { return twice(m); });
       loaded = true;
-      gather_volumetric<Dim, Shape>(P_, run.begin, run.end, corner(b), h1_, relaxation(run.material, dt), mean,
-                                    trace.data(), shift.data());
-      if (constants_[run.material].model == Model::tresca)
-        relax_by_used_strength(constants_[run.material], P_, run.begin, run.end, shift.data());
-    } else {
-      for (std::size_t p = run.begin; p < run.end; ++p) {
-        trace[p - run.begin] = trace_of(P_, p);
-        shift[p - run.begin] = 0.0;
-      }
     }
-    bool inverted = false;
-    for (std::size_t i = 0; i < run.end - run.begin; ++i) inverted |= !(std::fabs(trace[i]) < 1.0);
-    if (inverted) return {std::nan(""), 0.0};
-    const StressWork of_run =
-        update_stress(constants_[run.material], P_, run.begin, run.end, trace.data(), shift.data(), dt);
-    work.dissipated += of_run.dissipated;
-    work.pore_pressure += of_run.pore_pressure;
+    for (std::size_t begin = run.begin; begin < run.end; begin += few_particles) {
+      const std::size_t end = std::min(run.end, begin + few_particles);
+      if (k.averaged) {
+        gather_volumetric<Dim, Shape>(P_, begin, end, corner(b), h1_, relaxation(run.material, dt), mean, trace, shift);
+        if (k.model == Model::tresca) relax_by_used_strength(k, P_, begin, end, shift);
+      } else {
+        own_volumetric(P_, begin, end, trace, shift);
+      }
+      if (inverts(trace, end - begin)) return {std::nan(""), 0.0};
+      const StressWork done = update_stress(k, P_, begin, end, trace, shift, dt);
+      work.dissipated += done.dissipated;
+      work.pore_pressure += done.pore_pressure;
+    }
   }
   return work;
 }
@@ -313,14 +316,14 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::particles_to_grid() {
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::scatter_block(std::size_t b) {
   Vec4* tile = tiles_.data() + b * tile_nodes;
-  Vec4* force = Split ? forces_.data() + b * tile_nodes : nullptr;
+  SplitNode<Dim>* beside = Split ? beside_.data() + b * tile_nodes : nullptr;
   std::fill(tile, tile + tile_nodes, Vec4{});
-  if constexpr (Split) std::fill(force, force + tile_nodes, Vec4{});
+  if constexpr (Split) std::fill(beside, beside + tile_nodes, SplitNode<Dim>{});
   const std::size_t begin = grid_.first_particle(b), end = grid_.last_particle(b);
   if (P_.pore_pressure.empty())
-    mpm::particles_to_grid<Shape, Split, false>(next_dt_, h1_, corner(b), P_, begin, end, tile, force);
+    mpm::particles_to_grid<Shape, Split, false>(next_dt_, h1_, corner(b), P_, begin, end, tile, beside);
   else
-    mpm::particles_to_grid<Shape, Split, true>(next_dt_, h1_, corner(b), P_, begin, end, tile, force);
+    mpm::particles_to_grid<Shape, Split, true>(next_dt_, h1_, corner(b), P_, begin, end, tile, beside);
   if (ground_.any()) scatter_ground_gaps(b);
 }
 

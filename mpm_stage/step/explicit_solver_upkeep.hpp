@@ -71,7 +71,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
   ground_.update(grid_);
   mirrors_.update(grid_, wall_nodes_, Shape::support == 4 ? 2 : 1);
   tiles_.resize(grid_.occupied() * tile_nodes);
-  if (Split) forces_.resize(tiles_.size());
+  if (Split) beside_.resize(tiles_.size());
   velocity_.resize(grid_.active() * block_nodes);
   if (separate_change) change_.resize(velocity_.size());
   if (needs_all_sums()) {
@@ -217,10 +217,12 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::resume(Particles<Dim> particle
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 double ExplicitSolver<Dim, Shape, Split, Transfer>::unbalanced_force_ratio(const std::array<double, Dim>& body) const {
-  AlignedVector<Vec4> momentum(grid_.occupied() * tile_nodes, Vec4{}), force(grid_.occupied() * tile_nodes, Vec4{});
+  AlignedVector<Vec4> tiles(grid_.occupied() * tile_nodes, Vec4{});
+  AlignedVector<SplitNode<Dim>> beside(tiles.size(), SplitNode<Dim>{});
   for (std::size_t b = 0; b < grid_.occupied(); ++b) {
     const std::size_t begin = grid_.first_particle(b), end = grid_.last_particle(b);
-    Vec4 *m = momentum.data() + b * tile_nodes, *f = force.data() + b * tile_nodes;
+    Vec4* m = tiles.data() + b * tile_nodes;
+    SplitNode<Dim>* f = beside.data() + b * tile_nodes;
     if (P_.pore_pressure.empty())
       mpm::particles_to_grid<Shape, true, false>(0.0, h1_, corner(b), P_, begin, end, m, f);
     else
@@ -229,8 +231,7 @@ double ExplicitSolver<Dim, Shape, Split, Transfer>::unbalanced_force_ratio(const
   double unbalanced = 0.0, weight = 0.0;
   for (std::size_t a = 0; a < grid_.active(); ++a) {
     Vec4 m[block_nodes], f[block_nodes];
-    gather_tiles<Dim, Shape>(grid_, a, momentum.data(), m);
-    gather_tiles<Dim, Shape>(grid_, a, force.data(), f);
+    gather_sums<Dim, Shape, true>(grid_, a, tiles.data(), beside.data(), m, f);
     const NodeContact* contact = ground_.of_block(a);
     for (int n = 0; n < block_nodes; ++n) {
       if (m[n][0] <= mass_cutoff_ || (contact && contact[n].count > 0)) continue;

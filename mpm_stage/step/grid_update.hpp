@@ -6,6 +6,8 @@
 
 #include "mpm_stage/boundary/wall_contact.hpp"
 #include "mpm_stage/boundary/walls.hpp"
+#include "mpm_stage/grid/block_grid.hpp"
+#include "mpm_stage/transfer/mass_matrix.hpp"
 
 namespace tailrun::mpm {
 
@@ -34,7 +36,45 @@ struct WallNodes {
   };
   std::array<std::array<Side, 2>, Dim> side{};
   bool any = false;
+
+  bool any_frictional() const {
+    for (const auto& both : side)
+      if (both[0].kind == WallKind::frictional || both[1].kind == WallKind::frictional) return true;
+    return false;
+  }
 };
+
+// One step of a block's nodes that nothing touches: v = p / m + dt (f / m + b), with Split; without it the momentum p
+// has the forces in it. `acceleration` is b (m/s2) in the first Dim lanes. Nodes with no more than `mass_cutoff` (kg)
+// stay at rest. `velocity` gets what node_velocity() makes, and the change of velocity in lanes 2 and 3 in 2-D, in
+// `change` in 3-D.
+template <int Dim, bool Split>
+GridSums<Dim> move_free_nodes(double dt, Vec4 acceleration, double mass_cutoff, const Vec4* sum, const Vec4* force,
+                              Vec4* velocity, Vec4* change) {
+  const Vec4 gain = dt * acceleration, at_rest = {};
+  Vec4 before_squared = {}, after_squared = {};
+  for (int n = 0; n < Block<Dim>::nodes; ++n) {
+    const Vec4 m = splat(sum[n][0]), r = 1.0 / m;
+    const auto light = m <= splat(mass_cutoff);
+    const Vec4 before = light ? at_rest : as_velocity<Dim>(sum[n]) * r;
+    Vec4 v = before + gain;
+    if constexpr (Split) v += as_velocity<Dim>(force[n]) * (dt * r);
+    v = light ? at_rest : v;
+    if constexpr (Split) {
+      before_squared += m * (before * before);
+      after_squared += m * (v * v);
+      const Vec4 dv = v - before;
+      velocity[n] = Dim == 2 ? __builtin_shufflevector(v, dv, 0, 1, 4, 5) : v;
+      if constexpr (Dim == 3) change[n] = dv;
+    } else {
+      velocity[n] = v;
+    }
+  }
+  GridSums<Dim> sums;
+  sums.kinetic_before = 0.5 * sum_of_lanes(before_squared);
+  sums.kinetic_after = 0.5 * sum_of_lanes(after_squared);
+  return sums;
+}
 
 // Cundall's local damping: a force of `alpha` times the unbalanced one against the motion.
 template <int Dim>

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "mpm_stage/grid/block_grid.hpp"
+#include "mpm_stage/grid/shape_functions.hpp"
 #include "mpm_stage/grid/simd.hpp"
 
 namespace tailrun::mpm {
@@ -69,52 +70,49 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
                                  std::size_t end) {
   constexpr int S = Shape::support, T = Tile<2, Shape>::side;
   constexpr bool Moments = Affine && Shape::apic > 0.0;
-  const double h1 = s.inverse_cell, dt = s.dt, A0 = dt * h1, C0 = Shape::apic * h1;
+  using At = ShapeAt<Shape>;
+  const double h1 = s.inverse_cell, dt = s.dt;
+  const double G0 = h1 * At::slope_unit, A0 = dt * G0, C0 = Shape::apic * h1 * At::moment_unit;
   Vec4 far = {}, fast = {}, kinetic = {};
   for_each_group(
       begin, end, [&](const auto& g) __attribute__((always_inline)) {
         const Vec4 x = g.read(P.position[0].data()), y = g.read(P.position[1].data());
-        Vec4 wx[S], dx[S], mx[S], wy[S], dy[S], my[S];
-        const Int4 i0 = Shape::evaluate((x - corner[0]) * h1, wx, dx, mx);
-        const Int4 j0 = Shape::evaluate((y - corner[1]) * h1, wy, dy, my);
-        const Int4 at = j0 * T + i0;
+        const At ax((x - corner[0]) * h1), ay((y - corner[1]) * h1);
+        const Int4 at = whole(ay.base * T + ax.base);
         const Vec4 *n0 = node + at[0], *n1 = node + at[1], *n2 = node + at[2], *n3 = node + at[3];
-        Vec4 v[2] = {}, gx[2] = {}, gy[2] = {}, cx[2] = {}, cy[2] = {}, change[2] = {};
+        Vec4 v[2], gx[2] = {}, gy[2], cx[2] = {}, cy[2], change[2] = {}, row[2][S];
         for (int j = 0; j < S; ++j) {
-          Vec4 row[2] = {}, slope[2] = {}, moment[2] = {}, row_change[2] = {};
+          Vec4 u[2][S], row_change[2] = {};
           for (int i = 0; i < S; ++i) {
             const int k = j * T + i;
-            Vec4 u[2];
-            const auto lanes = [&](int first, Vec4& a, Vec4& b) {
-              const auto start = [&](const Vec4* n) { return reinterpret_cast<const double*>(n + k) + first; };
-              transpose_pairs(start(n0), start(n1), start(n2), start(n3), a, b);
-            };
-            lanes(0, u[0], u[1]);
+            Vec4 lanes[4];
+            if constexpr (Flip)
+              transpose_nodes(n0[k], n1[k], n2[k], n3[k], lanes);
+            else
+              transpose_doubled(n0[k], n1[k], n2[k], n3[k], lanes);
             for (int c = 0; c < 2; ++c) {
-              row[c] += u[c] * wx[i];
-              slope[c] += u[c] * dx[i];
-              if constexpr (Moments) moment[c] += u[c] * mx[i];
-            }
-            if constexpr (Flip) {
-              lanes(2, u[0], u[1]);
-              for (int c = 0; c < 2; ++c) row_change[c] += u[c] * wx[i];
+              u[c][i] = lanes[c];
+              if constexpr (Flip) row_change[c] += lanes[2 + c] * ax.w[i];
             }
           }
           for (int c = 0; c < 2; ++c) {
-            v[c] += row[c] * wy[j];
-            gx[c] += slope[c] * wy[j];
-            gy[c] += row[c] * dy[j];
-            if constexpr (Moments) {
-              cx[c] += moment[c] * wy[j];
-              cy[c] += row[c] * my[j];
-            }
-            if constexpr (Flip) change[c] += row_change[c] * wy[j];
+            const LineSums line = ax.sums(u[c]);
+            row[c][j] = line.value;
+            gx[c] += line.slope * ay.w[j];
+            if constexpr (Moments) cx[c] += line.moment * ay.w[j];
+            if constexpr (Flip) change[c] += row_change[c] * ay.w[j];
           }
+        }
+        for (int c = 0; c < 2; ++c) {
+          const LineSums line = ay.sums(row[c]);
+          v[c] = line.value;
+          gy[c] = line.slope;
+          cy[c] = line.moment;
         }
         if constexpr (Affine)
           for (int c = 0; c < 2; ++c) {
-            g.write(P.affine[2 * c].data(), Moments ? C0 * cx[c] : h1 * gx[c]);
-            g.write(P.affine[2 * c + 1].data(), Moments ? C0 * cy[c] : h1 * gy[c]);
+            g.write(P.affine[2 * c].data(), Moments ? C0 * cx[c] : G0 * gx[c]);
+            g.write(P.affine[2 * c + 1].data(), Moments ? C0 * cy[c] : G0 * gy[c]);
           }
         const auto G = midpoint_gradient(std::array<Vec4, 4>{A0 * gx[0], A0 * gy[0], A0 * gx[1], A0 * gy[1]});
         for (int k = 0; k < 4; ++k) g.write(P.gradient[k].data(), G[k]);
@@ -131,7 +129,7 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
         fast = larger(fast, speed);
         kinetic += g.only(0.5 * g.read(P.mass.data()) * speed);
       });
-  return {largest_lane(far), largest_lane(fast), (kinetic[0] + kinetic[1]) + (kinetic[2] + kinetic[3])};
+  return {largest_lane(far), largest_lane(fast), sum_of_lanes(kinetic)};
 }
 
 // In three dimensions `velocity` and `change` (for FLIP) are tiles of their own.

@@ -13,6 +13,7 @@
 // step.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "mpm_stage/grid/block_grid.hpp"
@@ -20,7 +21,7 @@
 
 namespace tailrun::mpm {
 
-// A node's sums: volume-weighted increment, volume, volume-weighted mean stress.
+// A node's sums: volume-weighted increment, volume, volume-weighted mean stress, mass.
 using AveragedNode = Vec4;
 // A node's averages: increment (1) and mean stress (Pa).
 using NodeMean = Vec2;
@@ -35,19 +36,20 @@ inline double trace_of(const Particles<Dim>& P, std::size_t p) {
 // Linear weights of the 2^Dim nodes around X (cells from the tile's node 0) of four particles.
 template <int Dim, int Side>
 struct LinearCell {
-  Int4 first{};
+  Int4 first;
   Vec4 weight[1 << Dim], fraction[Dim];
 
   template <class G>
   [[gnu::always_inline]] LinearCell(const Particles<Dim>& P, const G& g, const std::array<double, Dim>& corner,
                                     double h1) {
     int stride = 1;
+    Vec4 at = {};
     for (int d = 0; d < Dim; ++d, stride *= Side) {
-      const Vec4 X = (g.read(P.position[d].data()) - corner[d]) * h1;
-      const Int4 cell = whole(X);
-      fraction[d] = X - real(cell);
-      first += cell * stride;
+      const Vec4 X = (g.read(P.position[d].data()) - corner[d]) * h1, cell = truncated(X);
+      fraction[d] = X - cell;
+      at += cell * stride;
     }
+    first = whole(at);
     for (int n = 0; n < (1 << Dim); ++n) {
       weight[n] = splat(1.0);
       for (int d = 0; d < Dim; ++d) weight[n] *= (n >> d & 1) ? fraction[d] : 1.0 - fraction[d];
@@ -73,58 +75,77 @@ void scatter_volumetric(const Particles<Dim>& P, std::size_t begin, std::size_t 
                         const std::array<double, Dim>& corner, double h1, const std::array<double, Dim>& body,
                         AveragedNode* tile) {
   const double h = 1.0 / h1;
+  constexpr int T = Tile<Dim, Shape>::side;
+  Vec4 step[Dim];  // per mass, what the mean stress changes by from one node to the next: - b h
+  for (int d = 0; d < Dim; ++d) step[d] = Vec4{0.0, 0.0, -body[d] * h, 0.0};
   for_each_group(
       begin, end, [&](const auto& g) __attribute__((always_inline)) {
-        const LinearCell<Dim, Tile<Dim, Shape>::side> cell(P, g, corner, h1);
+        const LinearCell<Dim, T> cell(P, g, corner, h1);
         const Vec4 v = g.read(P.volume.data()), mass = g.read(P.mass.data());
         Vec4 trace = {};
         for (int d = 0; d < Dim; ++d) trace += g.read(P.gradient[d * (Dim + 1)].data());
-        trace *= v;
         // Mean stress at a node: s - rho b (x_node - x_p).
-        Vec4 at_first = v * mean_stress(P, g), step[Dim];
-        for (int d = 0; d < Dim; ++d) {
-          step[d] = mass * (-body[d] * h);
-          at_first -= cell.fraction[d] * step[d];
-        }
-        for (int n = 0; n < (1 << Dim); ++n) {
-          Vec4 stress = at_first;
-          for (int d = 0; d < Dim; ++d)
-            if (n >> d & 1) stress += step[d];
-          const Vec4& w = cell.weight[n];
-          Vec4 give[4] = {w * trace, w * v, w * stress, Vec4{}};
-          transpose(give[0], give[1], give[2], give[3]);
-          for (int k = 0; k < g.count; ++k) tile[cell.first[k] + cell.offset(n)] += give[k];
+        Vec4 at_first = v * mean_stress(P, g);
+        for (int d = 0; d < Dim; ++d) at_first -= cell.fraction[d] * mass * step[d][2];
+        Vec4 give[4] = {v * trace, v, at_first, mass};
+        transpose(give[0], give[1], give[2], give[3]);
+#pragma GCC unroll 4
+        for (int k = 0; k < g.count; ++k) {
+          AveragedNode* node = one_address(tile + cell.first[k]);
+          Vec4 along[Dim];
+          for (int d = 0; d < Dim; ++d) along[d] = step[d] * splat(mass[k]);
+          for (int n = 0; n < (1 << Dim); ++n) {
+            Vec4 there = give[k];
+            for (int d = 0; d < Dim; ++d)
+              if (n >> d & 1) there += along[d];
+            node[cell.offset(n)] += there * splat(cell.weight[n][k]);
+          }
         }
       });
 }
 
 inline NodeMean node_mean(const AveragedNode& node) {
-  const double r = node[1] > 0.0 ? 1.0 / node[1] : 0.0;
-  return NodeMean{node[0] * r, node[2] * r};
+  const Vec4 volume = splat(node[1]), mean = volume > Vec4{} ? node / volume : Vec4{};
+  return __builtin_shufflevector(mean, mean, 0, 2);
 }
 
-// `mean` is the tile of the nodes' averages. trace[0 .. end - begin) is the volumetric increment that the stress update
-// reads, shift[...] what it adds to the mean stress: the share `relaxation` of the way to the average.
+// `mean` is the tile of the nodes' averages, twice each. trace[0 .. end - begin) is the volumetric increment that the
+// stress update reads, shift[...] what it adds to the mean stress: the share `relaxation` of the way to the average.
 template <int Dim, class Shape>
 void gather_volumetric(const Particles<Dim>& P, std::size_t begin, std::size_t end,
-                       const std::array<double, Dim>& corner, double h1, double relaxation, const NodeMean* mean,
+                       const std::array<double, Dim>& corner, double h1, double relaxation, const Vec4* mean,
                        double* trace, double* shift) {
   for_each_group(
       begin, end, [&](const auto& g) __attribute__((always_inline)) {
         const LinearCell<Dim, Tile<Dim, Shape>::side> cell(P, g, corner, h1);
         Vec4 increment = {}, stress = {};
         for (int n = 0; n < (1 << Dim); ++n) {
-          const auto at = [&](int k) { return reinterpret_cast<const double*>(mean + cell.first[k] + cell.offset(n)); };
-          Vec4 a, b;
-          transpose_pairs(at(0), at(1), at(2), at(3), a, b);
-          increment += cell.weight[n] * a;
-          stress += cell.weight[n] * b;
+          const Vec4* node = mean + cell.offset(n);
+          Vec4 lanes[2];
+          transpose_doubled(node[cell.first[0]], node[cell.first[1]], node[cell.first[2]], node[cell.first[3]], lanes);
+          increment += cell.weight[n] * lanes[0];
+          stress += cell.weight[n] * lanes[1];
         }
         auto of_run = g;
         of_run.first -= begin;
         of_run.write(trace, increment);
         of_run.write(shift, relaxation * (stress - mean_stress(P, g)));
       });
+}
+
+// Where nothing is averaged: the particles' own increments.
+template <int Dim>
+void own_volumetric(const Particles<Dim>& P, std::size_t begin, std::size_t end, double* trace, double* shift) {
+  for (std::size_t p = begin; p < end; ++p) trace[p - begin] = trace_of(P, p);
+  std::fill(shift, shift + (end - begin), 0.0);
+}
+
+// Whether one of n volumetric increments is beyond all measure (or not a number).
+inline bool inverts(const double* trace, std::size_t n) {
+  Mask4 wrong = {};
+  for_each_group(
+      0, n, [&](const auto& g) __attribute__((always_inline)) { wrong |= ~(magnitude(g.read(trace)) < splat(1.0)); });
+  return (wrong[0] | wrong[1] | wrong[2] | wrong[3]) != 0;
 }
 
 }  // namespace tailrun::mpm

@@ -57,6 +57,9 @@ class StirredBlock {
     soil.poisson_ratio = 0.3;
     soil.friction_angle = 30.0;
     soil.cohesion = 5e3;
+    soil.bulk_modulus = 1e7;
+    soil.density = 2000.0;
+    soil.rate.consistency = options.model == mpm::Model::newtonian_fluid ? 10.0 : 0.0;
     soil.pore_pressure = options.pore_pressure;
     soil.average_volumetric_strain = options.averaged;
     solver_ = mpm::make_solver<2>(options.solver, cell, {}, std::move(P), {soil}, terrain_, mpm::Walls<2>{});

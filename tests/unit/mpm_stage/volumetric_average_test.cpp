@@ -42,8 +42,8 @@ Averages averages(const Particles<2>& P, const std::array<double, 2>& body) {
   constexpr int nodes = Tile<2, Shape>::nodes;
   AlignedVector<AveragedNode> sums(nodes, AveragedNode{});
   scatter_volumetric<2, Shape>(P, 0, P.count(), corner, 1.0 / h, body, sums.data());
-  AlignedVector<NodeMean> mean;
-  for (const AveragedNode& node : sums) mean.push_back(node_mean(node));
+  AlignedVector<Vec4> mean;
+  for (const AveragedNode& node : sums) mean.push_back(twice(node_mean(node)));
   Averages out{std::vector<double>(P.count()), std::vector<double>(P.count())};
   gather_volumetric<2, Shape>(P, 0, P.count(), corner, 1.0 / h, 1.0, mean.data(), out.trace.data(), out.shift.data());
   return out;
