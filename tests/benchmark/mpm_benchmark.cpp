@@ -42,11 +42,12 @@ double bytes_per_step(const BlockOptions& o) {
 // the formulae (a multiply-add is two; lanes that carry nothing do not count).
 double flops_per_step(const BlockOptions& o) {
   const bool flip = o.solver.transfer != mpm::TransferName::apic;
-  const double weights = 2 * 22;
-  // 9 nodes x 2 components x 3 sums, 3 rows x 2 components x 5 sums; change; midpoint gradient, motion, energy.
-  const double gather = 9 * 2 * 3 * 2 + 3 * 2 * 5 * 2 + (flip ? 9 * 2 * 2 + 3 * 2 * 2 + 8 : 0) + 34;
-  // Factors of 3 rows and 3 columns; 9 nodes x 3 values (m, px, py) x 2 products, and 2 values of forces.
-  const double scatter = 14 + 3 * 17 + 9 * 3 * 4 + (flip ? 9 * 2 * 4 : 0);
+  const double weights = 2 * 14;
+  // A line's differences and its three sums are 12, of 3 rows x 2 components with 2 products each, and of 2 columns;
+  // change; midpoint gradient, motion, energy.
+  const double gather = 3 * 2 * (12 + 4) + 2 * 12 + (flip ? 9 * 2 * 2 + 3 * 2 * 2 + 8 : 0) + 34;
+  // Factors of 3 rows and 3 columns; 9 nodes x 3 values (m, px, py) x 2 products, or 4 values (px, py, fx, fy) and m.
+  const double scatter = 14 + (flip ? 8 * 5 : 4 * 8) + 15 + (flip ? 9 * 4 * 4 + 9 * 2 : 9 * 3 * 4);
   const double stress = o.model == mpm::Model::mohr_coulomb ? 150 : o.model == mpm::Model::tresca ? 125 : 50;
   const double average = 2 * 10 + 10 + 4 * (3 * 2 + 2) + 4 * 2 * 2 + 6;
   return 2 * weights + gather + scatter + stress + (o.averaged && o.solver.volumetric_average ? average : 0.0);
@@ -105,6 +106,7 @@ void add(const std::string& name, const BlockOptions& options, long particles, i
 void add_main_table(int most_threads) {
   const std::pair<const char*, mpm::Model> models[] = {{"mohr_coulomb", mpm::Model::mohr_coulomb},
                                                        {"tresca", mpm::Model::tresca},
+                                                       {"newtonian", mpm::Model::newtonian_fluid},
                                                        {"linear_elastic", mpm::Model::linear_elastic}};
   const std::pair<const char*, mpm::TransferName> transfers[] = {{"apic", mpm::TransferName::apic},
                                                                  {"aflip", mpm::TransferName::aflip}};
