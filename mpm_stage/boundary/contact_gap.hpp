@@ -1,5 +1,6 @@
-// The gap between material and ground as a node sees it: the least clearance of the particles in its reach, a particle
-// being a sphere of its own volume's size. A node stops material only when this gap is closed.
+// Material near the ground as a node sees it. The gap: the least clearance of the particles in its reach, a particle
+// being a sphere of its own volume's size; a node stops material only when it is closed. And the mean, by volume, of
+// the shear stress that these particles can carry.
 #pragma once
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <limits>
 
 #include "mpm_stage/boundary/contact_nodes.hpp"
+#include "mpm_stage/boundary/soil_limit.hpp"
 
 namespace tailrun::mpm {
 
@@ -16,19 +18,24 @@ constexpr double closed_gap = 0.01;
 
 constexpr double no_gap_known = std::numeric_limits<double>::infinity();
 
-// Least value wins where tiles overlap.
+// Where tiles overlap the least value wins and sums add up.
 struct Gap {
-  double value = no_gap_known;
+  double value = no_gap_known;          // m
+  double volume = 0.0, strength = 0.0;  // m3 and m3 Pa, times the node's weights
   Gap& operator+=(const Gap& o) {
     value = std::min(value, o.value);
+    volume += o.volume;
+    strength += o.strength;
     return *this;
   }
 };
 
-// `distance` is the tile of the nodes' signed distances, infinity where unknown; adds to the tile `gap`.
+// `distance` is the tile of the nodes' signed distances, infinity where unknown; adds to the tile `gap`. The materials
+// are those of the particles' indices.
 template <int Dim, class Shape>
-void scatter_gaps(const Particles<Dim>& P, std::size_t begin, std::size_t end, const std::array<double, Dim>& corner,
-                  double h1, const double* distance, Gap* gap) {
+void scatter_gaps(const Particles<Dim>& P, std::size_t begin, std::size_t end,
+                  const std::vector<MaterialConstants>& materials, const std::array<double, Dim>& corner, double h1,
+                  const double* distance, Gap* gap) {
   constexpr int T = Tile<Dim, Shape>::side, S = Shape::support;
   for (std::size_t p = begin; p < end; ++p) {
     // Distance at the particle: linear between nodes, exact but for corners of the ground.
@@ -53,11 +60,14 @@ void scatter_gaps(const Particles<Dim>& P, std::size_t begin, std::size_t end, c
     const double size = Dim == 2 ? std::sqrt(P.volume[p]) : std::cbrt(P.volume[p]);
     clearance -= 0.5 * size + closed_gap / h1;
     if (!(clearance < 2.0 / h1)) continue;
+    const double limit = soil_limit(materials[static_cast<std::size_t>(P.material[p])], P.strength[p]);
     for (int k = 0; k < (Dim == 3 ? S : 1); ++k)
       for (int j = 0; j < S; ++j)
         for (int i = 0; i < S; ++i) {
-          if (w[0][i] * w[1][j] * (Dim == 3 ? w[2][k] : 1.0) <= 0.0) continue;
-          gap[((base[2] + k) * T + base[1] + j) * T + base[0] + i] += Gap{clearance};
+          const double weight = w[0][i] * w[1][j] * (Dim == 3 ? w[2][k] : 1.0);
+          if (weight <= 0.0) continue;
+          const double volume = weight * P.volume[p];
+          gap[((base[2] + k) * T + base[1] + j) * T + base[0] + i] += Gap{clearance, volume, volume * limit};
         }
   }
 }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "mpm_stage/boundary/ground_surface.hpp"
+
 namespace tailrun::mpm {
 
 template <int Dim>
@@ -22,12 +24,14 @@ void ContactNodes<Dim>::update(const BlockGrid<Dim>& grid) {
       // A particle within two cells of a node in contact, and the nodes around it, count as near.
       if (terrain_.distance(x0 + half, y0 + half) < reach_ + 4.0 * h + 1.4143 * half) {
         it->second = static_cast<std::ptrdiff_t>(contacts_.size());
+        const GroundSurface<B> surface(terrain_, x0, y0, h, reach_);
         for (int n = 0; n < Block<Dim>::nodes; ++n) {
           const int i = n % B, j = n / B % B;
           NodeContact node;
           node.count = terrain_.contacts(x0 + i * h, y0 + j * h, reach_, node.point, node.adhere);
           contacts_.push_back(node);
           distances_.push_back(terrain_.distance(x0 + i * h, y0 + j * h));
+          surfaces_.push_back(Dim == 3 ? surface[j * B + i] * h : surface[j * B + i]);
         }
       }
     }

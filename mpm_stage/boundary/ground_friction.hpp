@@ -5,13 +5,14 @@
 // node by node, slow sliding would stop them altogether and waste the rest of their friction, and a block would creep
 // down a slope that should hold it. So the capacity that nodes have is pooled: each node's friction impulse is spread
 // over the nodes in contact around it (a cell in every direction) in proportion to their masses. The sum is untouched.
+// What the soil can carry (soil_limit.hpp) is pooled alike, and the less of both counts.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "mpm_stage/boundary/contact_nodes.hpp"
+#include "mpm_stage/boundary/contact_gap.hpp"
 
 namespace tailrun::mpm {
 
@@ -20,6 +21,7 @@ struct NodeGrip {
   double mass = 0.0;      // kg
   double capacity = 0.0;  // N s, friction coefficient times normal impulse
   std::array<double, 2> normal{};
+  double carried = 0.0;  // N s, what the soil can carry
 };
 
 // The push of the ground as friction sees it. A stiff body at rest rings, and its normal impulse with it; friction that
@@ -57,6 +59,11 @@ inline void smooth_grip(const NodeContact& contact, double mass, double dt, doub
   if (grip.mass == 0.0) grip.normal = contact.point[0].normal;
   grip.mass = mass;
   grip.capacity = smoothed * mass * dt;
+}
+
+// N s, what the soil at a node carries in a step on the part of the ground's surface (m, m2) that is the node's.
+inline double carried_by_soil(const Gap& soil, double surface, double dt) {
+  return soil.volume > 0.0 ? dt * surface * soil.strength / soil.volume : no_soil_limit;
 }
 
 // Stops the approach of a node. The approach is free up to `allowed` (m/s), at which the gap between material and
@@ -102,29 +109,36 @@ inline double apply_friction(const NodeGrip& grip, double impulse, std::array<do
   return grip.mass * (sliding - left) * left;
 }
 
-// Friction impulse per unit mass that node n spreads: its capacity over the masses in contact around it.
+// Impulses per unit mass that a node spreads, m/s.
+struct Spread {
+  double friction = 0.0, carried = 0.0;
+};
+
+// Those of node n: its own over the masses in contact around it.
 template <int Dim>
-inline double spread_of(const ContactNodes<Dim>& ground, const std::vector<NodeGrip>& grip, std::size_t a, int n) {
-  const double capacity = grip[a * Block<Dim>::nodes + n].capacity;
-  if (capacity <= 0.0) return 0.0;
+inline Spread spread_of(const ContactNodes<Dim>& ground, const std::vector<NodeGrip>& grip, std::size_t a, int n) {
+  const NodeGrip& own = grip[a * Block<Dim>::nodes + n];
+  if (own.mass <= 0.0) return {};
   double mass = 0.0;
   for (int s = 0; s < Block<Dim>::neighbours; ++s) {
     const auto k = node_beside<Dim>(ground.contact_around(a), n, neighbour_step<Dim>(s));
     if (k >= 0) mass += grip[static_cast<std::size_t>(k)].mass;
   }
-  return capacity / mass;
+  return {own.capacity / mass, own.carried / mass};
 }
 
 // Friction impulse (N s) of node n from the spreads around it.
 template <int Dim>
 inline double pooled_impulse(const ContactNodes<Dim>& ground, const std::vector<NodeGrip>& grip,
-                             const std::vector<double>& spread, std::size_t a, int n) {
-  double sum = 0.0;
+                             const std::vector<Spread>& spread, std::size_t a, int n) {
+  Spread sum;
   for (int s = 0; s < Block<Dim>::neighbours; ++s) {
     const auto k = node_beside<Dim>(ground.contact_around(a), n, neighbour_step<Dim>(s));
-    if (k >= 0) sum += spread[static_cast<std::size_t>(k)];
+    if (k < 0) continue;
+    sum.friction += spread[static_cast<std::size_t>(k)].friction;
+    sum.carried += spread[static_cast<std::size_t>(k)].carried;
   }
-  return sum * grip[a * Block<Dim>::nodes + n].mass;
+  return std::min(sum.friction, sum.carried) * grip[a * Block<Dim>::nodes + n].mass;
 }
 
 }  // namespace tailrun::mpm

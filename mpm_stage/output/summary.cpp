@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "common/provenance.hpp"
+#include "mpm_stage/boundary/soil_limit.hpp"
 
 namespace tailrun::mpm {
 
@@ -37,8 +38,10 @@ Json features(const Scene& scene) {
   chosen.push_back(shape_name(o.shape) + " shape functions");
   chosen.push_back(o.transfer == TransferName::apic    ? "APIC transfer"
                    : o.transfer == TransferName::aflip ? fmt::format("AFLIP transfer, damping {}", o.transfer_damping)
-                                                       : fmt::format("FLIP/PIC transfer, FLIP share {}", o.flip_share));
-  bool pore = false, undrained = false, softening = false, rate = false, cutoff = false, average = false;
+                   : o.transfer == TransferName::flip  ? fmt::format("FLIP/PIC transfer, FLIP share {}", o.flip_share)
+                                                       : fmt::format("FMPM transfer, order {}", o.fmpm_order));
+  bool pore = false, undrained = false, softening = false, rate = false, cutoff = false, average = false,
+       limits = false;
   for (const auto& m : scene.materials) {
     if (m.model == Model::rigid) continue;
     chosen.push_back(fmt::format("material '{}': {}", m.name, model_name(m.model)));
@@ -47,6 +50,7 @@ Json features(const Scene& scene) {
     softening = softening || m.softening.active;
     rate = rate || m.rate.consistency > 0.0;
     cutoff = cutoff || m.tension_cutoff >= 0.0;
+    limits = limits || (o.soil_limits_friction && soil_limit(constants_of(m, 1.0), 0.0) < no_soil_limit);
     average = average || (m.average_volumetric_strain && o.volumetric_average);
   }
   say(average, "averaged volumetric strain");
@@ -56,6 +60,7 @@ Json features(const Scene& scene) {
   say(rate, "rate-dependent strength");
   say(cutoff, "tension cut-off");
   say(!scene.terrain.empty(), "terrain contact");
+  say(!scene.terrain.empty() && limits, "friction limited by the soil's strength");
   say(scene.walls.any_wall(), "walls of the grid");
   say(o.surface_share > 0.0, "velocities continued beyond the surface");
   say(!scene.walls.bodies.empty(), "moving bodies");

@@ -280,7 +280,7 @@ class ExplicitSolver final : public Solver<Dim> {
   };
   std::vector<std::vector<HeldNode>> held_nodes_;                     // per active block
   std::vector<std::pair<std::size_t, std::size_t>> nodes_in_bodies_;  // node, body
-  std::vector<double> spread_;
+  std::vector<Spread> spread_;
   std::vector<double> smoothed_grip_;              // m/s2, per active block
   std::vector<std::array<int, Dim>> grip_blocks_;  // the active blocks that it belongs to
   std::vector<GridSums<Dim>> grid_sums_;

@@ -90,6 +90,10 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
         grip = stop_approach<Dim>(contact[n], m, std::max(0.0, gap[n].value) / dt, v);
         const double share = smoothing_share(dt * h1_ * fastest_wave_, dt * h1_ * sliding_speed<Dim>(contact[n], v));
         smooth_grip(contact[n], m, dt, share, smoothed_grip_[a * block_nodes + n], grip);
+        grip.carried = grip.capacity;
+        if (options_.soil_limits_friction)
+          grip.carried = carried_by_soil(
+              gap[n], ground_.surfaces(a)[n] * share_inside<Dim>(wall_nodes_, grid_.node_index(a, n)), dt);
       }
       const double rubbed = sums.friction;
       if (wall_nodes_.any) apply_walls<Dim>(wall_nodes_, grid_.node_index(a, n), m, v, sums);
@@ -336,7 +340,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::scatter_ground_gaps(std::size_
   load_tile_if<Dim, Shape>(
       grid_, b, [this](std::size_t a) { return ground_.of_block(a) ? ground_.distances(a) : nullptr; }, no_gap_known,
       distance);
-  scatter_gaps<Dim, Shape>(P_, grid_.first_particle(b), grid_.last_particle(b), corner(b), h1_, distance, gap);
+  scatter_gaps<Dim, Shape>(P_, grid_.first_particle(b), grid_.last_particle(b), constants_, corner(b), h1_, distance,
+                           gap);
 }
 
 }  // namespace tailrun::mpm

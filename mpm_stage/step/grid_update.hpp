@@ -44,6 +44,17 @@ struct WallNodes {
   }
 };
 
+// Share of a node's cells that lie inside the walls, for a node that has none beyond them.
+template <int Dim>
+inline double share_inside(const WallNodes<Dim>& walls, const std::array<int, Dim>& node) {
+  double share = 1.0;
+  if (!walls.any) return share;
+  for (int d = 0; d < Dim; ++d)
+    for (const auto& side : walls.side[d])
+      if (side.kind != WallKind::open && node[d] == side.node) share *= 0.5;
+  return share;
+}
+
 // One step of a block's nodes that nothing touches: v = p / m + dt (f / m + b), with Split; without it the momentum p
 // has the forces in it. `acceleration` is b (m/s2) in the first Dim lanes. Nodes with no more than `mass_cutoff` (kg)
 // stay at rest. `velocity` gets what node_velocity() makes, and the change of velocity in lanes 2 and 3 in 2-D, in

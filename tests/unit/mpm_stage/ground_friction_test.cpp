@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "mpm_stage/boundary/ground_friction.hpp"
+#include "mpm_stage/grid/shape_functions.hpp"
 #include "mpm_stage/step/solver.hpp"
 
 using namespace tailrun::mpm;
@@ -88,4 +89,94 @@ TEST_CASE("a node remembers its push for the time of a wave through 7 cells, and
   CHECK(remembered(0.0, 14) == doctest::Approx(6.0 - 4.0 * std::pow(1.0 - 0.5 / 7.0, 14)));
   CHECK(remembered(0.004 * wave, 7) == doctest::Approx(6.0 - 4.0 * std::pow(1.0 - 1.0 / 7.0, 7)));
   CHECK(remembered(0.02 * wave, 1) == 6.0);
+}
+
+namespace {
+
+// Mean deceleration (m/s2) over 0.3 s of a slab of clay, 8 x 1 m, that slides at 3 m/s over flat ground in 2-D or, as
+// a slice between mirrors, in 3-D. Its strength takes 8 kPa / (2000 kg/m3 1 m) = 4 m/s2, the ground could hold 2 g.
+template <int Dim>
+double braking_of_slab(bool limited) {
+  constexpr double h = 0.25, spacing = 0.5 * h, density = 2000.0;
+  constexpr int layers = Dim == 3 ? 4 : 1;
+  Particles<Dim> P;
+  P.resize(64 * 8 * layers, true, false);
+  for (std::size_t p = 0; p < P.count(); ++p) {
+    P.position[0][p] = (static_cast<double>(p % 64) + 0.5) * spacing;
+    P.position[1][p] = (static_cast<double>(p / 64 % 8) + 0.5) * spacing;
+    if constexpr (Dim == 3) P.position[2][p] = (static_cast<double>(p / 512) + 0.5) * spacing;
+    P.velocity[0][p] = 3.0;
+    P.volume[p] = std::pow(spacing, Dim);
+    P.mass[p] = density * P.volume[p];
+    P.strength[p] = 8000.0;
+    P.identity[p] = static_cast<std::int32_t>(p);
+    P.stress[1][p] = -density * 9.81 * (1.0 - P.position[1][p]);
+    P.stress[0][p] = P.stress[2][p] = 0.5 * P.stress[1][p];
+  }
+  Material clay;
+  clay.name = "clay";
+  clay.model = Model::tresca;
+  clay.youngs_modulus = 5e6;
+  clay.poisson_ratio = 0.33;
+  Terrain ground;
+  ground.add_line({{{-100.0, 0.0}}, {{100.0, 0.0}}}, {2.0}, false);
+  Walls<Dim> walls;
+  std::array<double, Dim> origin{}, gravity{};
+  gravity[1] = -9.81;
+  if constexpr (Dim == 3) {
+    walls.bounded = true;
+    walls.low = {-5.0, -5.0, 0.0};
+    walls.high = {20.0, 5.0, 2.0 * h};
+    walls.side[2][0].kind = walls.side[2][1].kind = WallKind::slip;
+  }
+  SolverOptions options;
+  options.soil_limits_friction = limited;
+  auto solver = make_solver<Dim>(options, h, origin, std::move(P), {clay}, ground, walls);
+  solver->start(1e30);
+  double time = 0.0, speed = 0.0;
+  while (time < 0.3) time += solver->step(gravity, {}, 1e30).dt;
+  for (const double v : solver->particles().velocity[0]) speed += v / static_cast<double>(solver->particles().count());
+  return (3.0 - speed) / time;
+}
+
+}  // namespace
+
+TEST_CASE("rough ground brakes clay with the clay's strength: 4 m/s2, and more only by its ends") {
+  const double plane = braking_of_slab<2>(true), slice = braking_of_slab<3>(true);
+  CHECK(plane > 3.9);
+  CHECK(plane < 4.4);
+  CHECK(slice == doctest::Approx(plane).epsilon(0.02));
+  CHECK(braking_of_slab<2>(false) > 1.1 * plane);
+}
+
+TEST_CASE("nodes in contact stand for all of the ground's surface, whatever its angle to the grid") {
+  for (const double angle : {0.0, 0.3, 0.785, 1.2}) {
+    constexpr double h = 0.5;
+    const double c = std::cos(angle), s = std::sin(angle);
+    Terrain ground;
+    ground.add_line({{{-50.0 * c, -50.0 * s}}, {{0.0, 0.0}}, {{50.0 * c, 50.0 * s}}}, {0.5, 0.5}, false);
+    Particles<2> P;
+    P.resize(2001, false, false);
+    for (std::size_t p = 0; p < P.count(); ++p) {
+      P.position[0][p] = 0.01 * (static_cast<double>(p) - 1000.0) * c;  // 20 m along the ground
+      P.position[1][p] = 0.01 * (static_cast<double>(p) - 1000.0) * s;
+      P.volume[p] = P.mass[p] = 1.0;
+    }
+    BlockGrid<2> grid(h, {}, QuadraticShape::shift);
+    grid.sort(P);
+    ContactNodes<2> nodes(ground, 0.5 * h);
+    nodes.update(grid);
+    double within = 0.0, distance_of_others = 1e30;
+    for (std::size_t a = 0; a < grid.active(); ++a) {
+      if (!nodes.of_block(a)) continue;
+      for (int n = 0; n < Block<2>::nodes; ++n) {
+        const auto index = grid.node_index(a, n);
+        const double along = h * (index[0] * c + index[1] * s), surface = nodes.surfaces(a)[n];
+        if (std::fabs(along) < 5.0) within += surface;
+        if (surface == 0.0) distance_of_others = std::min(distance_of_others, std::fabs(nodes.distances(a)[n]));
+      }
+    }
+    CHECK(within == doctest::Approx(10.0).epsilon(0.06));  // nodes stand for ground up to a cell beside them
+    CHECK(distance_of_others > 0.3 * h);
+  }
 }

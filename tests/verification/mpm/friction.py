@@ -37,6 +37,26 @@ def incline(r):
     return rows
 
 
+def clay_slab(r):
+    """A slab of phi = 0 soil, 1 m thick, in motion: ground that could hold more takes its strength c per area, g sin b - c
+    / (rho H); ground that holds less takes its friction. The ceiling is this test's own."""
+    rows = []
+    for mu, angle in ((2.0, 0), (2.0, 15), (2.0, 30), (2.0, 45), (0.2, 0)):
+        beta = math.radians(angle)
+        c, s = math.cos(beta), math.sin(beta)
+        held = min(8000 / 2000, mu * G * c)
+        scene = r.scene()
+        scene["particles"][0].update(rotation=-angle, velocity=[3, 0])
+        scene["particles"][0]["stress"].update(surface_point=[s, c], angle=angle, shear_ratio=held / (G * c))
+        scene["terrain"][0].update(points=[[-100 * c, 100 * s], [100 * c, -100 * s]], friction=mu)
+        run = r.run(scene, f"mu{mu}_{angle}")
+        t = run.front["time_s"]
+        found = 2.0 * np.polyfit(t, run.front["centre_x_m"] * c - run.front["centre_y_m"] * s, 2)[0]
+        wanted = G * s - held
+        rows.append((f"acceleration, c / (rho g H) 0.41, mu {mu}, {angle} deg", found, wanted, abs(found - wanted) / held, 0.02))
+    return rows
+
+
 def centre(frame):
     return np.average(frame["x"], axis=0, weights=frame["mass"])
 

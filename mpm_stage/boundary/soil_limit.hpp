@@ -1,0 +1,24 @@
+// The largest shear stress that soil passes on to the ground.
+//
+// Ground rougher than soil is strong does not hold the soil beside it: that shears off in a band along the ground, as
+// thin as it likes. On the grid the band is one or two cells thick, and what it holds back is missing from the flow: a
+// block of clay went 29, 32 and 36 m over rough ground with cells of 1, 0.5 and 0.25 m, but as far with each of them
+// over smooth ground. So the ground takes no more than phi = 0 soil can carry, and the body slides on it as a whole.
+//
+// Not where such a band is no solution: strength that grows with the rate forbids it, softening soil would lose
+// strength in it that its particles do not know of, and frictional soil flows as a layer over one at rest.
+#pragma once
+
+#include "mpm_stage/material/material.hpp"
+
+namespace tailrun::mpm {
+
+// More than any friction; finite, so that it can be averaged.
+constexpr double no_soil_limit = 1e30;  // Pa
+
+// Pa; `cohesion` is the particle's.
+inline double soil_limit(const MaterialConstants& k, double cohesion) {
+  return k.model == Model::tresca && !k.softens && k.consistency == 0.0 ? cohesion : no_soil_limit;
+}
+
+}  // namespace tailrun::mpm
