@@ -88,6 +88,9 @@ class ExplicitSolver final : public Solver<Dim> {
       fastest_wave_ = std::max(fastest_wave_, wave_speed_[P_.material[p]] + std::sqrt(speed_squared(p)));
       kinetic_ += 0.5 * P_.mass[p] * speed_squared(p);
     }
+    for (const auto& column : P_.affine)
+      starts_with_spin_ =
+          starts_with_spin_ || std::any_of(column.begin(), column.end(), [](double c) { return c != 0.0; });
     next_dt_ = longest_step(limit);
     particles_to_grid();
   }
@@ -255,7 +258,7 @@ class ExplicitSolver final : public Solver<Dim> {
   SurfaceExtension<Dim> extension_;
   SleepingBlocks<Dim> sleep_;
   std::array<double, Dim> body_{};
-  bool averaging_ = false, leaving_ = false;
+  bool averaging_ = false, leaving_ = false, starts_with_spin_ = false;
   double kinetic_ = 0.0;     // J, of the particles on the nodes
   double nodes_gain_ = 0.0;  // J, what the nodes' kinetic energy has grown by in this step
   double mass_cutoff_ = 0.0, time_ = 0.0, next_dt_ = 0.0, drift_ = 0.0, fastest_wave_ = 0.0, viscous_limit_ = 1e30;

@@ -145,7 +145,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& 
   const auto since = Clock::now();
   constexpr bool Flip = Transfer == TransferName::flip || Transfer == TransferName::aflip;
   constexpr bool Affine = Transfer == TransferName::apic || Transfer == TransferName::aflip;
-  const GridToParticles s{dt, h1_, flip_share(dt)};
+  // Particles that start without spin, whatever their velocities, take it from the grid as it is.
+  const GridToParticles s{dt, h1_, flip_share(dt), time_ > 0.0 || starts_with_spin_ ? flip_share(dt) : 0.0};
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t b = 0; b < grid_.occupied(); ++b) {
     Vec4 tile[tile_nodes], change[Flip && separate_change ? tile_nodes : 1];

@@ -48,10 +48,17 @@ inline std::array<double, 9> midpoint_gradient(const std::array<double, 9>& A) {
 // What the velocity of a particle is made of. `flip` is the share of FLIP: v <- flip (v + sum w dv) + (1 - flip) sum w
 // v*. With Affine the particle also keeps the grid's affine velocity (Jiang et al. 2015); both together are AFLIP (Fei
 // et al. 2021).
+//
+// C = sum w v* r^T / D keeps the angular momentum that the velocities sum w v* leave out. A particle that keeps the
+// share `flip` of d = v_p - sum w v, what its velocity differs from the grid's before the step, has to keep that share
+// of the difference of spins, too; and it moves with another velocity than its own, which turns dt v* x (flip d) about
+// the origin. With flip skew(C_p - sum w v r^T / D) - [flip dt / (2 D) v* x d]x added to C, the angular momentum is
+// kept to round-off, as in APIC.
 struct GridToParticles {
   double dt;            // s
   double inverse_cell;  // 1/m
   double flip = 0.0;
+  double kept_spin = 0.0;  // share of the difference of spins that is kept: `flip` once the particles have a spin
 };
 
 // Largest displacement component (m) and speed squared, and kinetic energy (J), of the particles begin .. end.
@@ -80,9 +87,9 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
         const At ax((x - corner[0]) * h1), ay((y - corner[1]) * h1);
         const Int4 at = whole(ay.base * T + ax.base);
         const Vec4 *n0 = node + at[0], *n1 = node + at[1], *n2 = node + at[2], *n3 = node + at[3];
-        Vec4 v[2], gx[2] = {}, gy[2], cx[2] = {}, cy[2], change[2] = {}, row[2][S];
+        Vec4 v[2], gx[2] = {}, gy[2], cx[2] = {}, cy[2], change[2] = {}, row[2][S], spin_change = {}, across[S];
         for (int j = 0; j < S; ++j) {
-          Vec4 u[2][S], row_change[2] = {};
+          Vec4 u[2][S], row_change[2] = {}, du[S];
           for (int i = 0; i < S; ++i) {
             const int k = j * T + i;
             Vec4 lanes[4];
@@ -94,6 +101,7 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
               u[c][i] = lanes[c];
               if constexpr (Flip) row_change[c] += lanes[2 + c] * ax.w[i];
             }
+            if constexpr (Flip) du[i] = lanes[3];
           }
           for (int c = 0; c < 2; ++c) {
             const LineSums line = ax.sums(u[c]);
@@ -102,12 +110,26 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
             if constexpr (Moments) cx[c] += line.moment * ay.w[j];
             if constexpr (Flip) change[c] += row_change[c] * ay.w[j];
           }
+          if constexpr (Flip && Moments) {
+            spin_change += ax.sums(du).moment * ay.w[j];
+            across[j] = row_change[0];
+          }
         }
         for (int c = 0; c < 2; ++c) {
           const LineSums line = ay.sums(row[c]);
           v[c] = line.value;
           gy[c] = line.slope;
           cy[c] = line.moment;
+        }
+        if constexpr (Flip && Moments) {
+          spin_change -= ay.sums(across).moment;
+          const Vec4 own = g.read(P.affine[2].data()) - g.read(P.affine[1].data());
+          const Vec4 dx = g.read(P.velocity[0].data()) - v[0] + change[0];
+          const Vec4 dy = g.read(P.velocity[1].data()) - v[1] + change[1];
+          const Vec4 spin = (0.5 / C0) * (s.kept_spin * (own - C0 * (cx[1] - cy[0] - spin_change)) -
+                                          (s.flip * dt * h1 * h1 * Shape::apic) * (v[0] * dy - v[1] * dx));
+          cx[1] += spin;
+          cy[0] -= spin;
         }
         if constexpr (Affine)
           for (int c = 0; c < 2; ++c) {
@@ -180,10 +202,39 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
     for (int i = 0; i < 9; ++i) P.gradient[i][p] = G[i];
     double speed = 0.0;
     if constexpr (Flip) {
-      Vec4 dv = {};
+      Vec4 dv = {}, px = {}, py = {}, pz = {};
       for (int k = 0; k < S; ++k)
         for (int j = 0; j < S; ++j)
-          for (int i = 0; i < S; ++i) dv += change[start + (k * T + j) * T + i] * splat(w[0][i] * w[1][j] * w[2][k]);
+          for (int i = 0; i < S; ++i) {
+            const Vec4 node = change[start + (k * T + j) * T + i];
+            dv += node * splat(w[0][i] * w[1][j] * w[2][k]);
+            if constexpr (Affine && Shape::apic > 0.0) {
+              px += node * splat(m[0][i] * w[1][j] * w[2][k]);
+              py += node * splat(w[0][i] * m[1][j] * w[2][k]);
+              pz += node * splat(w[0][i] * w[1][j] * m[2][k]);
+            }
+          }
+      if constexpr (Affine && Shape::apic > 0.0) {
+        const double C0 = Shape::apic * h1, half = 0.5 / C0, turn = s.flip * dt * C0 * h1;
+        const double own[3] = {P.velocity[0][p] - v[0] + dv[0], P.velocity[1][p] - v[1] + dv[1],
+                               P.velocity[2][p] - v[2] + dv[2]};
+        // Twice the axial vectors: (C_zy - C_yz, C_xz - C_zx, C_yx - C_xy).
+        const double sx =
+            half * (s.kept_spin * (P.affine[7][p] - P.affine[5][p] - C0 * (cy[2] - cz[1] - py[2] + pz[1])) -
+                    turn * (v[1] * own[2] - v[2] * own[1]));
+        const double sy =
+            half * (s.kept_spin * (P.affine[2][p] - P.affine[6][p] - C0 * (cz[0] - cx[2] - pz[0] + px[2])) -
+                    turn * (v[2] * own[0] - v[0] * own[2]));
+        const double sz =
+            half * (s.kept_spin * (P.affine[3][p] - P.affine[1][p] - C0 * (cx[1] - cy[0] - px[1] + py[0])) -
+                    turn * (v[0] * own[1] - v[1] * own[0]));
+        cy[2] += sx;
+        cz[1] -= sx;
+        cz[0] += sy;
+        cx[2] -= sy;
+        cx[1] += sz;
+        cy[0] -= sz;
+      }
       for (int a = 0; a < 3; ++a) P.velocity[a][p] = s.flip * (P.velocity[a][p] + dv[a]) + (1.0 - s.flip) * v[a];
     } else {
       for (int i = 0; i < 3; ++i) P.velocity[i][p] = v[i];
