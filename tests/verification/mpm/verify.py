@@ -15,6 +15,7 @@ import time
 import collapse
 import elastic
 import friction
+import pictures
 import strength
 from runner import Runner
 
@@ -48,8 +49,11 @@ def main():
         seconds = time.perf_counter() - start
         entries = [dict(name=f"mpm_{name}", row=name, quantity=row["quantity"], against=AGAINST[name], error=row["error"],
                         ceiling=row["tolerance"], seconds=seconds) for row in report]
-        pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
-        (pathlib.Path(folder) / f"mpm_{name}.json").write_text(json.dumps(entries, indent=1) + "\n")
+        folder = pathlib.Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        if drawn := pictures.of_row(name, pathlib.Path(output), folder):
+            entries[0]["pictures"] = drawn
+        (folder / f"mpm_{name}.json").write_text(json.dumps(entries, indent=1) + "\n")
     path = pathlib.Path(output) / "summary.json"
     path.parent.mkdir(parents=True, exist_ok=True)
     summary = json.loads(path.read_text()) if path.exists() else {"title": name}
