@@ -13,7 +13,7 @@
 
 namespace tailrun::mpm {
 
-// More than any friction; finite, so that it can be averaged.
+// More than any friction, and finite, so that nodes can average: one that soil without a limit reaches, too, has none.
 constexpr double no_soil_limit = 1e30;  // Pa
 
 // Pa; `cohesion` is the particle's.
