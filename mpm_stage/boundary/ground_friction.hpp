@@ -22,6 +22,7 @@ struct NodeGrip {
   double capacity = 0.0;  // N s, friction coefficient times normal impulse
   std::array<double, 2> normal{};
   double carried = 0.0;  // N s, what the soil can carry
+  bool pushed = false;   // in this step the ground has stopped an approach
 };
 
 // The push of the ground as friction sees it. A stiff body at rest rings, and its normal impulse with it; friction that
@@ -74,6 +75,7 @@ inline NodeGrip stop_approach(const NodeContact& contact, double mass, double al
   NodeGrip grip;
   if (contact.adhere && allowed == 0.0) {
     v.fill(0.0);
+    grip.pushed = true;
     return grip;
   }
   // Two surfaces of a corner are taken in turn, twice, so that neither is left pushed through.
@@ -86,6 +88,7 @@ inline NodeGrip stop_approach(const NodeContact& contact, double mass, double al
       v[0] += approach * n[0];
       v[1] += approach * n[1];
       grip.mass = mass;
+      grip.pushed = true;
       grip.capacity += contact.point[k].friction * mass * approach;
       grip.normal = n;
     }
@@ -114,9 +117,10 @@ struct Spread {
   double friction = 0.0, carried = 0.0;
 };
 
-// Those of node n: its own over the masses in contact around it.
+// Those of node n: its own over the masses in contact around it. `grip` and `spread` are one velocity field's, by active
+// blocks.
 template <int Dim>
-inline Spread spread_of(const ContactNodes<Dim>& ground, const std::vector<NodeGrip>& grip, std::size_t a, int n) {
+inline Spread spread_of(const ContactNodes<Dim>& ground, const NodeGrip* grip, std::size_t a, int n) {
   const NodeGrip& own = grip[a * Block<Dim>::nodes + n];
   if (own.mass <= 0.0) return {};
   double mass = 0.0;
@@ -129,8 +133,8 @@ inline Spread spread_of(const ContactNodes<Dim>& ground, const std::vector<NodeG
 
 // Friction impulse (N s) of node n from the spreads around it.
 template <int Dim>
-inline double pooled_impulse(const ContactNodes<Dim>& ground, const std::vector<NodeGrip>& grip,
-                             const std::vector<Spread>& spread, std::size_t a, int n) {
+inline double pooled_impulse(const ContactNodes<Dim>& ground, const NodeGrip* grip, const Spread* spread, std::size_t a,
+                             int n) {
   Spread sum;
   for (int s = 0; s < Block<Dim>::neighbours; ++s) {
     const auto k = node_beside<Dim>(ground.contact_around(a), n, neighbour_step<Dim>(s));

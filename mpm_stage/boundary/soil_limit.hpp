@@ -1,4 +1,4 @@
-// The largest shear stress that soil passes on to the ground.
+// The largest shear stress that soil passes on to the ground, and to soil of another velocity field.
 //
 // Ground rougher than soil is strong does not hold the soil beside it: that shears off in a band along the ground, as
 // thin as it likes. On the grid the band is one or two cells thick, and what it holds back is missing from the flow: a
@@ -10,6 +10,7 @@
 #pragma once
 
 #include "mpm_stage/material/material.hpp"
+#include "mpm_stage/material/strength.hpp"
 
 namespace tailrun::mpm {
 
@@ -19,6 +20,15 @@ constexpr double no_soil_limit = 1e30;  // Pa
 // Pa; `cohesion` is the particle's.
 inline double soil_limit(const MaterialConstants& k, double cohesion) {
   return k.model == Model::tresca && !k.softens && k.consistency == 0.0 ? cohesion : no_soil_limit;
+}
+
+// Pa, of soil beside soil of another field: phi = 0 soil that softens carries what is left of its cohesion, a fluid
+// without viscosity nothing.
+inline double interface_strength(const MaterialConstants& k, double cohesion, double plastic_strain) {
+  if (k.consistency != 0.0) return no_soil_limit;
+  if (k.model == Model::newtonian_fluid) return 0.0;
+  if (k.model != Model::tresca) return no_soil_limit;
+  return k.softens ? softened_cohesion(k, cohesion, softening_share(k, plastic_strain)) : cohesion;
 }
 
 }  // namespace tailrun::mpm

@@ -47,6 +47,7 @@ void for_each_number(SolverState<Dim>& s, RunState& r, Action action) {
   integer("sorts", s.sorts);
   action("work_plastic", s.work.plastic);
   action("work_friction", s.work.friction);
+  action("work_contact", s.work.contact);
   action("work_damping", s.work.damping);
   action("work_external", s.work.external);
   action("work_removed", s.work.removed);
@@ -80,7 +81,7 @@ void for_each_number(SolverState<Dim>& s, RunState& r, Action action) {
 template <class Action>
 void for_each_value(LedgerRow& r, Action action) {
   for (double* x :
-       {&r.time, &r.kinetic, &r.elastic, &r.gravitational, &r.work.plastic, &r.work.friction, &r.work.damping,
+       {&r.time, &r.kinetic, &r.elastic, &r.gravitational, &r.work.plastic, &r.work.friction, &r.work.contact, &r.work.damping,
         &r.work.external, &r.work.removed, &r.work.pore_pressure, &r.work.transfer, &r.work.impact, &r.lost,
         &r.residual, &r.mass, &r.momentum[0], &r.momentum[1], &r.momentum[2], &r.angular_momentum})
     action(*x);
@@ -161,6 +162,10 @@ void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, do
   file.write("/particles/identity", std::span<const std::int32_t>(P.identity.data(), P.count()), 0, "1",
              "row of the input");
 
+  if (!P.side.empty())
+    file.write("/particles/side", std::span<const std::int32_t>(P.side.data(), P.count()), 0, "1",
+               "1: above weak soil, in a velocity field of its own");
+
   std::vector<std::int64_t> blocks;
   for (const auto& index : state.blocks) blocks.insert(blocks.end(), index.begin(), index.end());
   const std::vector<std::int64_t> first(state.first.begin(), state.first.end());
@@ -171,6 +176,8 @@ void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, do
     std::vector<std::int64_t> gripping;
     for (const auto& index : state.grip.blocks) gripping.insert(gripping.end(), index.begin(), index.end());
     file.write("/grid/grip_blocks", std::span<const std::int64_t>(gripping), Dim, "1", "blocks that touch the ground");
+    const std::vector<std::int64_t> fields(state.grip.fields.begin(), state.grip.fields.end());
+    file.write("/grid/grip_fields", std::span<const std::int64_t>(fields), 0, "1", "velocity field of each");
     file.write("/grid/grip", state.grip.smoothed, Block<Dim>::nodes, "m/s2",
                "smoothed friction per mass of their nodes");
   }
@@ -227,6 +234,11 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
   });
   std::copy(materials.begin(), materials.end(), P.material.begin());
   std::copy(identities.begin(), identities.end(), P.identity.begin());
+  if (!like.side.empty()) {
+    const auto sides = file.integers("/particles/side", n);
+    check_indices(file, "/particles/side", sides, 0, 2);
+    P.side.assign(sides.begin(), sides.end());
+  }
 
   const auto blocks = file.integers("/grid/blocks", 0, Dim);
   const auto first = file.integers("/grid/first", blocks.size() / Dim + 1);
@@ -240,6 +252,9 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
     const auto index = file.integers("/grid/grip_blocks", gripping, Dim);
     state.grip.blocks.resize(gripping);
     for (std::size_t k = 0; k < index.size(); ++k) state.grip.blocks[k / Dim][k % Dim] = static_cast<int>(index[k]);
+    const auto fields = file.integers("/grid/grip_fields", gripping);
+    check_indices(file, "/grid/grip_fields", fields, 0, most_fields);
+    state.grip.fields.assign(fields.begin(), fields.end());
     state.grip.smoothed = file.doubles("/grid/grip", gripping, Block<Dim>::nodes);
   }
   state.wave_speed = file.doubles("/grid/wave_speed");

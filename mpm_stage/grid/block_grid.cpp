@@ -60,7 +60,7 @@ BlockGrid<Dim>::BlockGrid(double cell_size, std::array<double, Dim> origin, doub
     : cell_size_(cell_size), shift_(shift), origin_(origin) {}
 
 template <int Dim>
-void BlockGrid<Dim>::sort(Particles<Dim>& particles, std::span<const std::uint8_t> keep) {
+void BlockGrid<Dim>::sort(Particles<Dim>& particles, std::span<const std::uint8_t> keep, const FieldChoice& fields) {
   const std::size_t n = particles.count();
   const double inverse = 1.0 / cell_size_;
 
@@ -91,16 +91,18 @@ void BlockGrid<Dim>::sort(Particles<Dim>& particles, std::span<const std::uint8_
     materials = std::max(materials, particles.material[p] + 1);
   }
 
-  // Counting sort by (block in row order, material); stable, so the previous order decides inside a run.
+  // Counting sort by (block in row order, field, material); stable, so the previous order decides inside a run.
+  const int groups = fields.count * materials;
   std::vector<std::uint64_t> sorted = keys;
   std::sort(sorted.begin(), sorted.end());
   std::vector<std::uint32_t> rank_of_number(keys.size());
   for (std::size_t k = 0; k < keys.size(); ++k)
     rank_of_number[k] = static_cast<std::uint32_t>(rank_of(sorted, keys[k]));
-  std::vector<std::size_t> start(sorted.size() * materials + 1, 0);
+  std::vector<std::size_t> start(sorted.size() * groups + 1, 0);
   std::size_t kept = 0;
   for (std::size_t p = 0; p < n; ++p) {
-    rank_[p] = rank_of_number[rank_[p]] * materials + particles.material[p];
+    const int group = fields.several() ? fields.of(particles, p) * materials + particles.material[p] : particles.material[p];
+    rank_[p] = rank_of_number[rank_[p]] * groups + group;
     if (!keep.empty() && !keep[p]) continue;
     ++start[rank_[p] + 1];
     ++kept;
@@ -114,6 +116,7 @@ void BlockGrid<Dim>::sort(Particles<Dim>& particles, std::span<const std::uint8_
   particles.for_each_column([this](auto& column) { permute(column, spare_, order_); });
   permute(particles.material, spare_integers_, order_);
   permute(particles.identity, spare_integers_, order_);
+  permute(particles.side, spare_integers_, order_);
 
   // Runs and occupied blocks; a block that only dropped particles were in does not exist.
   occupied_index_.clear();
@@ -121,13 +124,13 @@ void BlockGrid<Dim>::sort(Particles<Dim>& particles, std::span<const std::uint8_
   first_run_.clear();
   runs_.clear();
   for (std::size_t k = 0; k < sorted.size(); ++k) {
-    if (bounds[k * materials] == bounds[(k + 1) * materials]) continue;
+    if (bounds[k * groups] == bounds[(k + 1) * groups]) continue;
     occupied_index_.push_back(block_of_key<Dim>(sorted[k]));
-    first_.push_back(bounds[k * materials]);
+    first_.push_back(bounds[k * groups]);
     first_run_.push_back(runs_.size());
-    for (int m = 0; m < materials; ++m) {
-      const std::size_t begin = bounds[k * materials + m], end = bounds[k * materials + m + 1];
-      if (begin < end) runs_.push_back({begin, end, m});
+    for (int g = 0; g < groups; ++g) {
+      const std::size_t begin = bounds[k * groups + g], end = bounds[k * groups + g + 1];
+      if (begin < end) runs_.push_back({begin, end, g % materials, g / materials});
     }
   }
   first_.push_back(kept);
@@ -137,7 +140,7 @@ void BlockGrid<Dim>::sort(Particles<Dim>& particles, std::span<const std::uint8_
 
 template <int Dim>
 void BlockGrid<Dim>::restore(const std::vector<Index>& occupied, const std::vector<std::size_t>& first,
-                             const AlignedVector<std::int32_t>& material) {
+                             const Particles<Dim>& particles, const FieldChoice& fields) {
   occupied_index_ = occupied;
   first_ = first;
   first_run_.clear();
@@ -145,7 +148,9 @@ void BlockGrid<Dim>::restore(const std::vector<Index>& occupied, const std::vect
   for (std::size_t b = 0; b < occupied.size(); ++b) {
     first_run_.push_back(runs_.size());
     for (std::size_t p = first[b]; p < first[b + 1]; ++p) {
-      if (p == first[b] || material[p] != material[p - 1]) runs_.push_back({p, p, material[p]});
+      const int material = particles.material[p], field = fields.of(particles, p);
+      if (p == first[b] || material != runs_.back().material || field != runs_.back().field)
+        runs_.push_back({p, p, material, field});
       runs_.back().end = p + 1;
     }
   }

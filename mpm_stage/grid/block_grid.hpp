@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "mpm_stage/grid/field_choice.hpp"
 #include "mpm_stage/scene/particles.hpp"
 
 namespace tailrun::mpm {
@@ -72,10 +73,11 @@ struct Tile {
   static constexpr int nodes = power(side, Dim);
 };
 
-// Consecutive particles of one block and one material.
+// Consecutive particles of one block, one velocity field and one material.
 struct Run {
   std::size_t begin, end;
   int material;
+  int field = 0;
 };
 
 template <int Dim>
@@ -86,15 +88,15 @@ class BlockGrid {
   // `shift` as in shape_functions.hpp; `origin` is a node (m).
   BlockGrid(double cell_size, std::array<double, Dim> origin, double shift);
 
-  // Sorts the particles by block, material and previous order and rebuilds the blocks. Particles whose `keep` flag is 0
-  // are dropped (an empty span keeps all). Throws ComputationError when a particle is so far off that block numbers
+  // Sorts the particles by block, field, material and previous order and rebuilds the blocks. Particles whose `keep`
+  // flag is 0 are dropped (an empty span keeps all). Throws ComputationError when a particle is so far off that block numbers
   // overflow (more than 2^20 blocks from the origin) or its position is not finite.
-  void sort(Particles<Dim>& particles, std::span<const std::uint8_t> keep = {});
+  void sort(Particles<Dim>& particles, std::span<const std::uint8_t> keep = {}, const FieldChoice& fields = {});
 
   // The grid of particles that were sorted before and have drifted since: `occupied` blocks, in the order that
   // occupied_index() had, of which block b held the particles first[b] .. first[b + 1].
   void restore(const std::vector<Index>& occupied, const std::vector<std::size_t>& first,
-               const AlignedVector<std::int32_t>& material);
+               const Particles<Dim>& particles, const FieldChoice& fields);
 
   double cell_size() const { return cell_size_; }
   const std::array<double, Dim>& origin() const { return origin_; }

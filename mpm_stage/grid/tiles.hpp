@@ -37,12 +37,11 @@ template <int... Positions, class Action>
   (action(std::integral_constant<int, Positions>{}), ...);
 }
 
-// nodes[0 .. Block::nodes) = sum over the tiles around active block a; tiles hold Tile::nodes values per occupied
-// block.
+// nodes[0 .. Block::nodes) = sum over the tiles `around` an active block (-1: none there); tiles hold Tile::nodes values
+// per occupied block.
 template <int Dim, class Shape, class Value>
-inline void gather_tiles(const BlockGrid<Dim>& grid, std::size_t a, const Value* tiles, Value* nodes) {
+inline void gather_tiles(const std::array<int, Block<Dim>::neighbours>& around, const Value* tiles, Value* nodes) {
   constexpr int own = Block<Dim>::neighbours / 2;
-  const auto& around = grid.tiles_around(a);
   const auto tile_at = [&](int n) { return tiles + static_cast<std::size_t>(around[n]) * Tile<Dim, Shape>::nodes; };
   if (around[own] < 0)
     std::fill(nodes, nodes + Block<Dim>::nodes, Value{});

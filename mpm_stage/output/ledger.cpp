@@ -14,7 +14,7 @@ namespace tailrun::mpm {
 namespace {
 
 double losses(const WorkDone& w) {
-  return w.plastic + w.friction + w.damping + w.removed;
+  return w.plastic + w.friction + w.contact + w.damping + w.removed;
 }
 
 }  // namespace
@@ -67,11 +67,11 @@ const LedgerRow& Ledger<Dim>::sample(double time, Solver<Dim>& solver, double li
 template <int Dim>
 void Ledger<Dim>::write(const std::filesystem::path& path) const {
   std::string text =
-      "time_s,kinetic_J,elastic_J,gravitational_J,plastic_J,friction_J,damping_J,external_J,pore_pressure_J,transfer_J,"
+      "time_s,kinetic_J,elastic_J,gravitational_J,plastic_J,friction_J,contact_J,damping_J,external_J,pore_pressure_J,transfer_J,"
       "impact_J,residual_J,mass_kg,momentum_x_Ns,momentum_y_Ns,momentum_z_Ns,angular_momentum_Nms\n";
   for (const auto& r : rows_) {
     text += fmt::format("{:.9g}", r.time);
-    for (const double energy : {r.kinetic, r.elastic, r.gravitational, r.work.plastic, r.work.friction, r.work.damping,
+    for (const double energy : {r.kinetic, r.elastic, r.gravitational, r.work.plastic, r.work.friction, r.work.contact, r.work.damping,
                                 r.work.external, r.work.pore_pressure, r.work.transfer, r.work.impact, r.residual})
       text += csv_cell(energy, 10);
     for (const double kept : {r.mass, r.momentum[0], r.momentum[1], r.momentum[2], r.angular_momentum})

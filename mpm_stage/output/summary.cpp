@@ -61,6 +61,7 @@ Json features(const Scene& scene) {
   say(cutoff, "tension cut-off");
   say(!scene.terrain.empty(), "terrain contact");
   say(!scene.terrain.empty() && limits, "friction limited by the soil's strength");
+  say(o.fields.several(), fmt::format("velocity fields of their own ({})", o.fields.count));
   say(scene.walls.any_wall(), "walls of the grid");
   say(o.surface_share > 0.0, "velocities continued beyond the surface");
   say(!scene.walls.bodies.empty(), "moving bodies");
@@ -132,6 +133,7 @@ Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& reco
                  {"total_at_start_J", first.total()},
                  {"plastic_J", last.work.plastic},
                  {"friction_J", last.work.friction},
+                 {"contact_J", last.work.contact},
                  {"damping_J", last.work.damping},
                  {"external_J", last.work.external},
                  {"pore_pressure_J", last.work.pore_pressure},

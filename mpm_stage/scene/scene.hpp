@@ -87,6 +87,8 @@ Material read_material(const std::string& name, const CaseNode& node, double res
 // The case file's "particles" in scene.particles, with the gradients of the velocities that it gives them.
 void generate_particles(const CaseNode& root, const std::vector<Material>& materials, Scene& scene);
 std::vector<TerrainInput> read_terrain(const CaseNode& root, const ParticleSet& particles);
+// Needs the scene's materials and particles.
+void read_contact(const CaseNode& root, Scene& scene);
 std::vector<MovingBody<3>> read_bodies(const CaseNode& root, int dimension);
 std::vector<double> assign_cohesion(const CaseFile& file, const std::vector<Material>& materials,
                                     ParticleSet& particles);

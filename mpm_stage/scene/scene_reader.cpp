@@ -231,6 +231,7 @@ double read_cell_size(const CaseNode& root, const std::string& size) {
 // Elastic bodies keep their surface, and the stress along it with it. Soil that yields keeps neither, and where it
 // comes apart there is nothing to continue from.
 double default_surface_share(const Scene& scene) {
+  if (scene.solver.fields.several()) return 0.0;
   for (const std::int32_t id : scene.particles.material_id)
     if (scene.materials[static_cast<std::size_t>(id)].model != Model::linear_elastic) return 0.0;
   return 0.05;
@@ -278,6 +279,7 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
   for (const auto& line : scene.terrain_lines) scene.terrain.add_line(line.points, line.friction, line.adhere);
   drop_rigid(scene);
   if (scene.particles.count() == 0) root.fail("materials", "no particle is left: all materials are rigid");
+  read_contact(root, scene);
   if (scene.solver.surface_share < 0.0) scene.solver.surface_share = default_surface_share(scene);
   scene.cohesion = assign_cohesion(file, scene.materials, scene.particles);
   read_base_motion(root, scene);

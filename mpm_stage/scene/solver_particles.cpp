@@ -10,6 +10,7 @@ Particles<Dim> solver_particles(const Scene& scene) {
   Particles<Dim> P;
   const TransferName transfer = scene.solver.transfer;
   P.resize(set.count(), transfer == TransferName::apic || transfer == TransferName::aflip, pore);
+  if (scene.solver.fields.by_side) P.side.assign(set.count(), 0);
   constexpr int components = stress_components<Dim>;
   for (std::size_t p = 0; p < set.count(); ++p) {
     for (int d = 0; d < Dim; ++d) {

@@ -16,13 +16,18 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "common/error.hpp"
 #include "mpm_stage/boundary/contact_gap.hpp"
+#include "mpm_stage/boundary/field_contact.hpp"
 #include "mpm_stage/boundary/ground_friction.hpp"
 #include "mpm_stage/boundary/held_directions.hpp"
 #include "mpm_stage/boundary/mirror_walls.hpp"
 #include "mpm_stage/boundary/surface_extension.hpp"
+#include "mpm_stage/boundary/half_spaces.hpp"
+#include "mpm_stage/grid/field_layout.hpp"
+#include "mpm_stage/grid/field_sides.hpp"
 #include "mpm_stage/grid/tiles.hpp"
 #include "mpm_stage/material/mean_stress_relaxation.hpp"
 #include "mpm_stage/material/stress_update.hpp"
@@ -30,6 +35,7 @@
 #include "mpm_stage/step/sleeping_blocks.hpp"
 #include "mpm_stage/step/solver.hpp"
 #include "mpm_stage/transfer/grid_to_particles.hpp"
+#include "mpm_stage/transfer/interface_sums.hpp"
 #include "mpm_stage/transfer/mass_matrix.hpp"
 #include "mpm_stage/transfer/particles_to_grid.hpp"
 #include "mpm_stage/transfer/volumetric_average.hpp"
@@ -169,6 +175,25 @@ class ExplicitSolver final : public Solver<Dim> {
     bool outside = false, asleep = false;
   };
 
+  // What moves the nodes in a step.
+  struct Drive {
+    double dt;                             // s
+    std::array<double, Dim> body, inertial;  // m/s2
+    Vec4 acceleration = {};                // `body` in the first Dim lanes
+    bool shaken = false;
+    bool untouched = true;  // but for ground and mirrors: no shaking, frictional walls or damping
+  };
+  // A field's sums at the nodes of a block, as gather_sums makes them.
+  struct NodeSums {
+    const Vec4 *sum = nullptr, *force = nullptr;
+  };
+  // The bodies that meet at a node, and which one each field belongs to (-1: the field is not there).
+  struct NodeBodies {
+    std::array<BodyAtNode<Dim>, most_fields> body;
+    std::array<int, most_fields> of_field{-1, -1, -1, -1};
+    int count = 0;
+  };
+
   static void add_time(double& phase, Clock::time_point since) {
     phase += std::chrono::duration<double>(Clock::now() - since).count();
   }
@@ -205,6 +230,24 @@ class ExplicitSolver final : public Solver<Dim> {
     return Transfer == TransferName::aflip ? 1.0 - std::min(1.0, options_.transfer_damping * dt * h1_ * fastest_wave_)
                                            : options_.flip_share;
   }
+  // Field f's node 0 of active block a in arrays by nodes, and its tiles.
+  std::size_t node_of(int f, std::size_t a) const { return fields_.number(f, a) * block_nodes; }
+  const Vec4* tiles_of(int f) const { return tiles_.data() + fields_.tile(f, 0) * tile_nodes; }
+  const SplitNode<Dim>* beside_of(int f) const {
+    return Split ? beside_.data() + fields_.tile(f, 0) * tile_nodes : nullptr;
+  }
+  std::array<double, Dim> velocity_at(std::size_t node) const {
+    std::array<double, Dim> v;
+    for (int d = 0; d < Dim; ++d) v[d] = velocity_[node][d];
+    return v;
+  }
+  // `before` (m/s) is the velocity at the step's start, which the transfer asks for where momentum and forces are apart.
+  void set_velocity(std::size_t node, const std::array<double, Dim>& v, const std::array<double, Dim>& before) {
+    velocity_[node] = node_velocity<Dim>(v.data());
+    if constexpr (Split) {
+      for (int d = 0; d < Dim; ++d) (separate_change ? change_[node][d] : velocity_[node][2 + d]) = v[d] - before[d];
+    }
+  }
   void add_change(std::size_t node, const std::array<double, Dim>& dv) {
     for (int d = 0; d < Dim; ++d) (separate_change ? change_[node][d] : velocity_[node][2 + d]) += dv[d];
   }
@@ -220,15 +263,30 @@ class ExplicitSolver final : public Solver<Dim> {
   void remember_grip(const GripMemory<Dim>& memory);
   bool in_reach_of_body(std::size_t a, int n) const;
   bool still(std::size_t a) const;
-  bool sleeps_on(std::size_t b, const Vec4* tile, double dt);
+  template <class Load>
+  bool sleeps_on(std::size_t b, const Vec4* tile, Load load, double dt);
   double wave_speed_in(std::size_t b) const;
   void lay_to_rest(std::size_t b, BlockMotion& motion);
   void mind_sides(std::size_t b, BlockMotion& motion);
   void update_grid(double dt, const std::array<double, Dim>& body, const std::array<double, Dim>& inertial);
+  Drive drive_of(double dt, const std::array<double, Dim>& body, const std::array<double, Dim>& inertial) const;
+  void complete_sums();
+  GridSums<Dim> rest_block(std::size_t a);
+  GridSums<Dim> move_block(std::size_t a, const Drive& drive);
+  void drive_nodes(int f, std::size_t a, const Drive& drive, const NodeSums& node, GridSums<Dim>& sums);
+  void touch_boundaries(int f, std::size_t a, const Drive& drive, const NodeSums& node, GridSums<Dim>& sums);
+  NodeBodies bodies_at(std::size_t a, int n, const NodeSums* node, const InterfaceNode (*surface)[block_nodes]) const;
+  void part_fields(std::size_t a, double dt, bool rub, const NodeSums* node, GridSums<Dim>& sums);
+  void take_over(std::size_t a, int n, const NodeSums* node, const NodeBodies& bodies, const NodeBodies& free,
+                 GridSums<Dim>& sums);
+  void settle_on_ground(std::size_t a, double dt, const NodeSums* node, GridSums<Dim>& sums);
+  void continue_velocities();
+  void add_up();
+  void scatter_interfaces(std::size_t b);
   void filter_velocity(double dt);
-  void take_increment(std::size_t a);
-  void find_held(std::size_t a, double dt);
-  void keep_contact(std::size_t a);
+  void take_increment(int f, std::size_t a);
+  void find_held(int f, std::size_t a, double dt);
+  void keep_contact(int f, std::size_t a);
   void gather(double dt, StepReport& report);
   void scatter_average(std::size_t b);
   void average(bool sorted);
@@ -237,7 +295,8 @@ class ExplicitSolver final : public Solver<Dim> {
   void particles_to_grid();
   void scatter_block(std::size_t b);
   void scatter_ground_gaps(std::size_t b);
-  void rub_ground(double dt, const std::array<double, Dim>& inertial);
+  void rub_ground(const Drive& drive);
+  void rub_block(int f, std::size_t a, const Drive& drive);
   void sum_kinetic_after();
   void move_bodies(double dt);
   std::string description(std::size_t p) const;
@@ -246,6 +305,7 @@ class ExplicitSolver final : public Solver<Dim> {
   SolverOptions options_;
   double h_, h1_;
   BlockGrid<Dim> grid_;
+  FieldLayout<Dim> fields_;
   Particles<Dim> P_;
   std::vector<Material> materials_;
   std::vector<MaterialConstants> constants_;
@@ -264,10 +324,13 @@ class ExplicitSolver final : public Solver<Dim> {
   double mass_cutoff_ = 0.0, time_ = 0.0, next_dt_ = 0.0, drift_ = 0.0, fastest_wave_ = 0.0, viscous_limit_ = 1e30;
   std::vector<double> wave_speed_;  // m/s, by material
 
+  // Of each velocity field, one after the other (grid/field_layout.hpp):
   AlignedVector<Vec4> tiles_;              // per occupied block
   AlignedVector<SplitNode<Dim>> beside_;   // the same, only with Split
   AlignedVector<Vec4> velocity_, change_;  // per active block
   AlignedVector<Vec4> sums_, force_sums_;  // per active block, only with mirrors
+  AlignedVector<InterfaceNode> interface_tiles_;  // per occupied block, only with several fields
+  HalfSpaces<Shape> half_spaces_;
   AlignedVector<AveragedNode> averaged_tiles_;
   AlignedVector<NodeMean> averaged_;
   std::vector<Gap> gap_tiles_;
@@ -304,6 +367,8 @@ class ExplicitSolver final : public Solver<Dim> {
 #include "mpm_stage/step/explicit_solver_phases.hpp"
 #include "mpm_stage/step/explicit_solver_sleep.hpp"
 #include "mpm_stage/step/explicit_solver_upkeep.hpp"
+#include "mpm_stage/step/field_phase.hpp"
+#include "mpm_stage/step/grid_phase.hpp"
 #include "mpm_stage/step/mass_filter.hpp"
 
 namespace tailrun::mpm {

@@ -8,33 +8,43 @@ namespace tailrun::mpm {
 
 // The ground's friction on the nodes' velocities.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_ground(double dt, const std::array<double, Dim>& inertial) {
+void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_ground(const Drive& drive) {
+  for (int f = 0; f < fields_.count(); ++f) {
+    const NodeGrip* grip = grip_.data() + node_of(f, 0);
+    Spread* spread = spread_.data() + node_of(f, 0);
 #pragma omp parallel for schedule(dynamic, 4)
-  for (std::size_t a = 0; a < grid_.active(); ++a)
-    if (ground_.of_block(a))
-      for (int n = 0; n < block_nodes; ++n) spread_[a * block_nodes + n] = spread_of(ground_, grip_, a, n);
+    for (std::size_t a = 0; a < grid_.active(); ++a)
+      if (ground_.of_block(a) && fields_.present(f, a))
+        for (int n = 0; n < block_nodes; ++n) spread[a * block_nodes + n] = spread_of(ground_, grip, a, n);
 #pragma omp parallel for schedule(dynamic, 4)
-  for (std::size_t a = 0; a < grid_.active(); ++a) {
-    if (!ground_.of_block(a)) continue;
-    for (int n = 0; n < block_nodes; ++n) {
-      const std::size_t k = a * block_nodes + n;
-      if (grip_[k].mass <= 0.0) continue;
-      std::array<double, Dim> v, lost{};
-      for (int d = 0; d < Dim; ++d) v[d] = lost[d] = velocity_[k][d];
-      grid_sums_[a].friction += apply_friction<Dim>(grip_[k], pooled_impulse(ground_, grip_, spread_, a, n), v);
-      GridSums<Dim>& sums = grid_sums_[a];
+    for (std::size_t a = 0; a < grid_.active(); ++a)
+      if (ground_.of_block(a) && fields_.present(f, a)) rub_block(f, a, drive);
+  }
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_block(int f, std::size_t a, const Drive& drive) {
+  const NodeGrip* grip = grip_.data() + node_of(f, 0);
+  const Spread* spread = spread_.data() + node_of(f, 0);
+  GridSums<Dim>& sums = grid_sums_[a];
+  for (int n = 0; n < block_nodes; ++n) {
+    const std::size_t k = node_of(f, a) + static_cast<std::size_t>(n);
+    const NodeGrip& own = grip_[k];
+    if (own.mass <= 0.0) continue;
+    std::array<double, Dim> v, lost{};
+    for (int d = 0; d < Dim; ++d) v[d] = lost[d] = velocity_[k][d];
+    sums.friction += apply_friction<Dim>(own, pooled_impulse(ground_, grip, spread, a, n), v);
+    for (int d = 0; d < Dim; ++d) {
+      lost[d] = v[d] - lost[d];
+      sums.impulse[d] += own.mass * lost[d];
+      sums.external += drive.dt * own.mass * drive.inertial[d] * lost[d];
+      velocity_[k][d] = v[d];
+    }
+    if constexpr (Split) {
+      add_change(k, lost);
       for (int d = 0; d < Dim; ++d) {
-        lost[d] = v[d] - lost[d];
-        sums.impulse[d] += grip_[k].mass * lost[d];
-        sums.external += dt * grip_[k].mass * inertial[d] * lost[d];
-        velocity_[k][d] = v[d];
-      }
-      if constexpr (Split) {
-        add_change(k, lost);
-        for (int d = 0; d < Dim; ++d) {
-          sums.kinetic_after += grip_[k].mass * lost[d] * (v[d] - 0.5 * lost[d]);
-          sums.impact += 0.5 * grip_[k].mass * lost[d] * change_of(k, d);
-        }
+        sums.kinetic_after += own.mass * lost[d] * (v[d] - 0.5 * lost[d]);
+        sums.impact += 0.5 * own.mass * lost[d] * change_of(k, d);
       }
     }
   }
@@ -46,9 +56,12 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::sum_kinetic_after() {
 #pragma omp parallel for schedule(static)
   for (std::size_t a = 0; a < grid_.active(); ++a) {
     double twice = 0.0;
-    for (std::size_t k = a * block_nodes; k < (a + 1) * block_nodes; ++k) {
-      if (sums_[k][0] <= mass_cutoff_) continue;
-      for (int d = 0; d < Dim; ++d) twice += sums_[k][0] * velocity_[k][d] * velocity_[k][d];
+    for (int f = 0; f < fields_.count(); ++f) {
+      if (!fields_.present(f, a)) continue;
+      for (std::size_t k = node_of(f, a); k < node_of(f, a) + block_nodes; ++k) {
+        if (sums_[k][0] <= mass_cutoff_) continue;
+        for (int d = 0; d < Dim; ++d) twice += sums_[k][0] * velocity_[k][d] * velocity_[k][d];
+      }
     }
     grid_sums_[a].kinetic_after = 0.5 * twice;
   }
@@ -59,15 +72,19 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::move_bodies(double dt) {
   nodes_in_bodies_.clear();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const std::array<double, Dim>& v = body_velocity_[b] = walls_.bodies[b].velocity_at(time_ + 0.5 * dt);
-    const auto changed = [this, b](std::size_t k, const std::array<double, Dim>& dv) {
-      if constexpr (Split) {
-        add_change(k, dv);
-        for (int d = 0; d < Dim; ++d) work_.impact += 0.5 * sums_[k][0] * dv[d] * change_of(k, d);
-      }
-      if constexpr (Transfer == TransferName::fmpm) nodes_in_bodies_.push_back({k, b});
-    };
-    work_.external +=
-        push_nodes<Dim>(grid_, walls_.bodies[b], v, sums_.data(), mass_cutoff_, velocity_.data(), bodies_[b], changed);
+    for (int f = 0; f < fields_.count(); ++f) {
+      const std::size_t first = node_of(f, 0);
+      const auto changed = [this, b, first](std::size_t node, const std::array<double, Dim>& dv) {
+        [[maybe_unused]] const std::size_t k = first + node;
+        if constexpr (Split) {
+          add_change(k, dv);
+          for (int d = 0; d < Dim; ++d) work_.impact += 0.5 * sums_[k][0] * dv[d] * change_of(k, d);
+        }
+        if constexpr (Transfer == TransferName::fmpm) nodes_in_bodies_.push_back({k, b});
+      };
+      work_.external += push_nodes<Dim>(grid_, walls_.bodies[b], v, sums_.data() + first, mass_cutoff_,
+                                        velocity_.data() + first, bodies_[b], changed);
+    }
     for (int d = 0; d < Dim; ++d) bodies_[b].displacement[d] += dt * v[d];
   }
 }

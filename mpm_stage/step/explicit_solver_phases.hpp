@@ -9,138 +9,6 @@
 namespace tailrun::mpm {
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const std::array<double, Dim>& body,
-                                                              const std::array<double, Dim>& inertial) {
-  const auto since = Clock::now();
-  bool shaken = false;
-  for (const double a : inertial) shaken = shaken || a != 0.0;
-  // Nodes at mirrors need their images' sums, so those are complete before any velocity is made.
-  const bool whole = needs_all_sums();
-  const bool untouched = !shaken && !wall_nodes_.any_frictional() && !(options_.local_damping > 0.0);
-  Vec4 acceleration = {};
-  for (int d = 0; d < Dim; ++d) acceleration[d] = body[d];
-  if (whole) {
-#pragma omp parallel for schedule(dynamic, 4)
-    for (std::size_t a = 0; a < grid_.active(); ++a)
-      gather_sums<Dim, Shape, Split>(grid_, a, tiles_.data(), beside_.data(), sums_.data() + a * block_nodes,
-                                     Split ? force_sums_.data() + a * block_nodes : nullptr);
-    mirrors_.fold(sums_.data());
-    if constexpr (Split) mirrors_.fold(force_sums_.data());
-    if (extension_.active()) {
-      extension_.choose(sums_.data());
-      extension_.fold_momentum(sums_.data());
-      if constexpr (Split) extension_.fold_force(sums_.data(), force_sums_.data());
-    }
-  }
-#pragma omp parallel for schedule(dynamic, 4)
-  for (std::size_t a = 0; a < grid_.active(); ++a) {
-    if (still(a)) {
-      std::fill_n(velocity_.data() + a * block_nodes, block_nodes, Vec4{});
-      grid_sums_[a] = {};
-      if (ground_.of_block(a)) std::fill_n(grip_.data() + a * block_nodes, block_nodes, NodeGrip{});
-      continue;
-    }
-    Vec4 own_sum[block_nodes], own_force[Split ? block_nodes : 1];
-    const Vec4 *sum = own_sum, *force = own_force;
-    if (whole) {
-      sum = sums_.data() + a * block_nodes;
-      force = Split ? force_sums_.data() + a * block_nodes : nullptr;
-    } else {
-      gather_sums<Dim, Shape, Split>(grid_, a, tiles_.data(), beside_.data(), own_sum, own_force);
-    }
-    const NodeContact* contact = ground_.of_block(a);
-    if (!contact && untouched) {
-      grid_sums_[a] =
-          move_free_nodes<Dim, Split>(dt, acceleration, mass_cutoff_, sum, force, velocity_.data() + a * block_nodes,
-                                      separate_change ? change_.data() + a * block_nodes : nullptr);
-      continue;
-    }
-    GridSums<Dim> sums;
-    Gap gap[block_nodes];
-    if (contact) {
-      gather_tiles<Dim, Shape>(grid_, a, gap_tiles_.data(), gap);
-      std::fill_n(grip_.data() + a * block_nodes, block_nodes, NodeGrip{});
-    }
-    for (int n = 0; n < block_nodes; ++n) {
-      const double m = sum[n][0];
-      Vec4& out = velocity_[a * block_nodes + n];
-      if (m <= mass_cutoff_) {
-        out = Vec4{};
-        if constexpr (separate_change) change_[a * block_nodes + n] = Vec4{};
-        if (contact) smoothed_grip_[a * block_nodes + n] = 0.0;
-        continue;
-      }
-      std::array<double, Dim> v, before{};
-      for (int d = 0; d < Dim; ++d) {
-        v[d] = sum[n][1 + d] / m;
-        if constexpr (Split) {
-          before[d] = v[d];
-          v[d] += dt * force[n][1 + d] / m;
-        }
-        v[d] += dt * (body[d] + inertial[d]);
-      }
-      if constexpr (Split) {
-        sums.kinetic_before += 0.5 * m * square<Dim>(before);
-        if (options_.local_damping > 0.0)
-          sums.damping += m * apply_local_damping<Dim>(options_.local_damping, dt, before, v);
-      }
-      const std::array<double, Dim> pushed = v;
-      if (contact && contact[n].count > 0) {
-        NodeGrip& grip = grip_[a * block_nodes + n];
-        grip = stop_approach<Dim>(contact[n], m, std::max(0.0, gap[n].value) / dt, v);
-        const double share = smoothing_share(dt * h1_ * fastest_wave_, dt * h1_ * sliding_speed<Dim>(contact[n], v));
-        smooth_grip(contact[n], m, dt, share, smoothed_grip_[a * block_nodes + n], grip);
-        grip.carried = grip.capacity;
-        if (options_.soil_limits_friction)
-          grip.carried = carried_by_soil(
-              gap[n], ground_.surfaces(a)[n] * share_inside<Dim>(wall_nodes_, grid_.node_index(a, n)), dt);
-      }
-      const double rubbed = sums.friction;
-      if (wall_nodes_.any) apply_walls<Dim>(wall_nodes_, grid_.node_index(a, n), m, v, sums);
-      for (int d = 0; d < Dim; ++d) sums.impulse[d] += m * (v[d] - pushed[d]);
-      if (shaken)
-        for (int d = 0; d < Dim; ++d) sums.external += dt * m * inertial[d] * v[d];
-      out = node_velocity<Dim>(v.data());
-      if constexpr (Split) {
-        sums.kinetic_after += 0.5 * m * square<Dim>(v);
-        for (int d = 0; d < Dim; ++d) {
-          sums.impact -= 0.5 * m * (v[d] - pushed[d]) * (before[d] + v[d]);
-          before[d] = v[d] - before[d];
-        }
-        sums.impact -= sums.friction - rubbed;
-        if constexpr (separate_change) change_[a * block_nodes + n] = Vec4{};
-        add_change(a * block_nodes + n, before);
-      }
-    }
-    grid_sums_[a] = sums;
-  }
-  if (ground_.any()) rub_ground(dt, inertial);
-  if (!bodies_.empty()) move_bodies(dt);
-  const auto reflect = [this] {
-    mirrors_.reflect(velocity_.data());
-    if constexpr (separate_change) mirrors_.reflect(change_.data());
-  };
-  if (mirrors_.any()) reflect();
-  if (extension_.active()) {
-    extension_.extend(velocity_.data());
-    if constexpr (separate_change) extension_.extend(change_.data());
-    if (mirrors_.any()) reflect();
-  }
-  if constexpr (Split)
-    if (whole) sum_kinetic_after();
-  nodes_gain_ = 0.0;
-  for (const auto& s : grid_sums_) {
-    work_.friction += s.friction;
-    work_.damping += s.damping;
-    work_.external += s.external;
-    if constexpr (Split) work_.impact += s.impact;
-    nodes_gain_ += s.kinetic_after - s.kinetic_before;
-    for (int d = 0; d < Dim; ++d) impulse_[d] += s.impulse[d];
-  }
-  add_time(seconds_.grid, since);
-}
-
-template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& report) {
   const auto since = Clock::now();
   constexpr bool Flip = Transfer == TransferName::flip || Transfer == TransferName::aflip;
@@ -150,19 +18,28 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& 
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t b = 0; b < grid_.occupied(); ++b) {
     Vec4 tile[tile_nodes], change[Flip && separate_change ? tile_nodes : 1];
-    if constexpr (Dim == 2 && !Flip)
-      load_tile<Dim, Shape>(grid_, b, velocity_.data(), tile, [](Vec4 v) { return twice(v); });
-    else
-      load_tile<Dim, Shape>(grid_, b, velocity_.data(), tile);
+    int loaded = -1;
+    const auto load = [&](int f) {
+      if (f == loaded) return;
+      loaded = f;
+      if constexpr (Dim == 2 && !Flip)
+        load_tile<Dim, Shape>(grid_, b, velocity_.data() + node_of(f, 0), tile, [](Vec4 v) { return twice(v); });
+      else
+        load_tile<Dim, Shape>(grid_, b, velocity_.data() + node_of(f, 0), tile);
+    };
     if (averaging_) will_write(averaged_tiles_.data() + b * tile_nodes, tile_nodes);
     BlockMotion motion;
-    if (sleep_.asleep(b) && sleeps_on(b, tile, dt)) {
+    if (sleep_.asleep(b) && sleeps_on(b, tile, load, dt)) {
       motion_[b] = BlockMotion{.wave = wave_speed_in(b), .asleep = true};
       if (averaging_ && sleep_.stale(b)) scatter_average(b);
       continue;
     }
-    if constexpr (Flip && separate_change) load_tile<Dim, Shape>(grid_, b, change_.data(), change);
+    int changed = -1;
     for (const Run& run : grid_.runs(b)) {
+      load(run.field);
+      if constexpr (Flip && separate_change)
+        if (run.field != changed) load_tile<Dim, Shape>(grid_, b, change_.data() + node_of(run.field, 0), change);
+      changed = run.field;
       const MotionExtremes e =
           mpm::grid_to_particles<Shape, Flip, Affine>(s, tile, change, corner(b), P_, run.begin, run.end);
       motion.far = std::max(motion.far, e.displacement);
@@ -251,7 +128,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::average(bool sorted) {
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t a = 0; a < grid_.active(); ++a) {
     AveragedNode node[block_nodes];
-    gather_tiles<Dim, Shape>(grid_, a, averaged_tiles_.data(), node);
+    gather_tiles<Dim, Shape>(grid_.tiles_around(a), averaged_tiles_.data(), node);
     for (int n = 0; n < block_nodes; ++n) averaged_[a * block_nodes + n] = node_mean(node[n]);
   }
   add_time(seconds_.volumetric, since);
@@ -320,29 +197,34 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::particles_to_grid() {
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::scatter_block(std::size_t b) {
-  Vec4* tile = tiles_.data() + b * tile_nodes;
-  SplitNode<Dim>* beside = Split ? beside_.data() + b * tile_nodes : nullptr;
-  std::fill(tile, tile + tile_nodes, Vec4{});
-  if constexpr (Split) std::fill(beside, beside + tile_nodes, SplitNode<Dim>{});
-  const std::size_t begin = grid_.first_particle(b), end = grid_.last_particle(b);
-  if (P_.pore_pressure.empty())
-    mpm::particles_to_grid<Shape, Split, false>(next_dt_, h1_, corner(b), P_, begin, end, tile, beside);
-  else
-    mpm::particles_to_grid<Shape, Split, true>(next_dt_, h1_, corner(b), P_, begin, end, tile, beside);
+  fields_.for_each_span(b, [&](const FieldSpan& span) {
+    const std::size_t first = fields_.tile(span.field, b) * tile_nodes;
+    Vec4* tile = tiles_.data() + first;
+    SplitNode<Dim>* beside = Split ? beside_.data() + first : nullptr;
+    std::fill(tile, tile + tile_nodes, Vec4{});
+    if constexpr (Split) std::fill(beside, beside + tile_nodes, SplitNode<Dim>{});
+    if (P_.pore_pressure.empty())
+      mpm::particles_to_grid<Shape, Split, false>(next_dt_, h1_, corner(b), P_, span.begin, span.end, tile, beside);
+    else
+      mpm::particles_to_grid<Shape, Split, true>(next_dt_, h1_, corner(b), P_, span.begin, span.end, tile, beside);
+  });
+  if (fields_.near_shared(b)) scatter_interfaces(b);
   if (ground_.any()) scatter_ground_gaps(b);
 }
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::scatter_ground_gaps(std::size_t b) {
-  Gap* gap = gap_tiles_.data() + b * tile_nodes;
-  std::fill(gap, gap + tile_nodes, Gap{});
-  if (!ground_.near_ground(b)) return;
   double distance[tile_nodes];
-  load_tile_if<Dim, Shape>(
-      grid_, b, [this](std::size_t a) { return ground_.of_block(a) ? ground_.distances(a) : nullptr; }, no_gap_known,
-      distance);
-  scatter_gaps<Dim, Shape>(P_, grid_.first_particle(b), grid_.last_particle(b), constants_, corner(b), h1_, distance,
-                           gap);
+  const bool near = ground_.near_ground(b);
+  if (near)
+    load_tile_if<Dim, Shape>(
+        grid_, b, [this](std::size_t a) { return ground_.of_block(a) ? ground_.distances(a) : nullptr; }, no_gap_known,
+        distance);
+  fields_.for_each_span(b, [&](const FieldSpan& span) {
+    Gap* gap = gap_tiles_.data() + fields_.tile(span.field, b) * tile_nodes;
+    std::fill(gap, gap + tile_nodes, Gap{});
+    if (near) scatter_gaps<Dim, Shape>(P_, span.begin, span.end, constants_, corner(b), h1_, distance, gap);
+  });
 }
 
 }  // namespace tailrun::mpm

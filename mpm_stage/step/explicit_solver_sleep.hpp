@@ -14,15 +14,19 @@ bool ExplicitSolver<Dim, Shape, Split, Transfer>::still(std::size_t a) const {
   return true;
 }
 
-// Whether a sleeping block's nodes, loaded into `tile`, let it sleep on.
+// Whether a sleeping block's nodes, which load(field) puts into `tile`, let it sleep on.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
-bool ExplicitSolver<Dim, Shape, Split, Transfer>::sleeps_on(std::size_t b, const Vec4* tile, double dt) {
+template <class Load>
+bool ExplicitSolver<Dim, Shape, Split, Transfer>::sleeps_on(std::size_t b, const Vec4* tile, Load load, double dt) {
   double fastest = 0.0;
-  for (int n = 0; n < tile_nodes; ++n) {
-    double squared = 0.0;
-    for (int d = 0; d < Dim; ++d) squared += tile[n][d] * tile[n][d];
-    fastest = std::max(fastest, squared);
-  }
+  fields_.for_each_span(b, [&](const FieldSpan& span) {
+    load(span.field);
+    for (int n = 0; n < tile_nodes; ++n) {
+      double squared = 0.0;
+      for (int d = 0; d < Dim; ++d) squared += tile[n][d] * tile[n][d];
+      fastest = std::max(fastest, squared);
+    }
+  });
   if (fastest < sleep_.speed() * sleep_.speed()) return sleep_.doze(b, dt);
   sleep_.wake(b);
   return false;

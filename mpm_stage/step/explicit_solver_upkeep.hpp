@@ -35,7 +35,10 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::sort() {
     }
   }
   if (sleep_.active()) sleep_.before_sort(grid_);
-  grid_.sort(P_, keep);
+  grid_.sort(P_, keep, options_.fields);
+  if (options_.fields.by_side &&
+      find_sides<Dim, Shape>(grid_, options_.fields, [this](std::size_t b) { return corner(b); }, P_))
+    grid_.sort(P_, {}, options_.fields);
   if (grid_.occupied() == 0) throw ComputationError("no particle is left in the domain");
   lay_out();
   if (sleep_.active())
@@ -70,9 +73,20 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
   const GripMemory<Dim> memory = grip_memory();
   ground_.update(grid_);
   mirrors_.update(grid_, wall_nodes_, Shape::support == 4 ? 2 : 1);
-  tiles_.resize(grid_.occupied() * tile_nodes);
+  fields_.update(grid_, options_.fields.count);
+  const auto several = static_cast<std::size_t>(fields_.count());
+  tiles_.resize(several * grid_.occupied() * tile_nodes);
   if (Split) beside_.resize(tiles_.size());
-  velocity_.resize(grid_.active() * block_nodes);
+  // Where a field is not, nothing is computed, and what looks there finds it at rest and without mass.
+  if (fields_.several()) {
+    velocity_.assign(several * grid_.active() * block_nodes, Vec4{});
+    change_.clear();
+    sums_.clear();
+    force_sums_.clear();
+    grip_.clear();
+    interface_tiles_.resize(tiles_.size());
+  }
+  velocity_.resize(several * grid_.active() * block_nodes);
   if (separate_change) change_.resize(velocity_.size());
   if (needs_all_sums()) {
     sums_.resize(velocity_.size());
@@ -81,11 +95,11 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
   if (Transfer == TransferName::fmpm) {
     term_.resize(velocity_.size());
     products_.resize(velocity_.size());
-    held_nodes_.resize(grid_.active());
+    held_nodes_.resize(several * grid_.active());
   }
   if (averaging_) {
-    averaged_tiles_.resize(tiles_.size());
-    averaged_.resize(velocity_.size());
+    averaged_tiles_.resize(grid_.occupied() * tile_nodes);
+    averaged_.resize(grid_.active() * block_nodes);
   }
   if (ground_.any()) {
     gap_tiles_.resize(tiles_.size());
@@ -102,10 +116,11 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 GripMemory<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::grip_memory() const {
   GripMemory<Dim> memory;
-  for (std::size_t b = 0; b < grip_blocks_.size(); ++b) {
+  for (std::size_t b = 0; b < smoothed_grip_.size() / block_nodes; ++b) {
     const auto first = smoothed_grip_.begin() + static_cast<std::ptrdiff_t>(b * block_nodes);
     if (std::none_of(first, first + block_nodes, [](double s) { return s > 0.0; })) continue;
-    memory.blocks.push_back(grip_blocks_[b]);
+    memory.blocks.push_back(grip_blocks_[b % grip_blocks_.size()]);
+    memory.fields.push_back(static_cast<int>(b / grip_blocks_.size()));
     memory.smoothed.insert(memory.smoothed.end(), first, first + block_nodes);
   }
   return memory;
@@ -115,14 +130,16 @@ template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::remember_grip(const GripMemory<Dim>& memory) {
   smoothed_grip_.assign(velocity_.size(), 0.0);
   grip_blocks_.resize(grid_.active());
-  std::map<std::array<int, Dim>, std::size_t> known;
-  for (std::size_t b = 0; b < memory.blocks.size(); ++b) known[memory.blocks[b]] = b;
+  std::map<std::pair<int, std::array<int, Dim>>, std::size_t> known;
+  for (std::size_t b = 0; b < memory.blocks.size(); ++b) known[{memory.fields[b], memory.blocks[b]}] = b;
   for (std::size_t a = 0; a < grid_.active(); ++a) {
     grip_blocks_[a] = grid_.active_index(a);
-    const auto it = known.find(grip_blocks_[a]);
-    if (it == known.end()) continue;
-    const auto first = memory.smoothed.begin() + static_cast<std::ptrdiff_t>(it->second * block_nodes);
-    std::copy(first, first + block_nodes, smoothed_grip_.begin() + static_cast<std::ptrdiff_t>(a * block_nodes));
+    for (int f = 0; f < fields_.count(); ++f) {
+      const auto it = known.find({f, grip_blocks_[a]});
+      if (it == known.end()) continue;
+      const auto first = memory.smoothed.begin() + static_cast<std::ptrdiff_t>(it->second * block_nodes);
+      std::copy(first, first + block_nodes, smoothed_grip_.begin() + static_cast<std::ptrdiff_t>(node_of(f, a)));
+    }
   }
 }
 
@@ -143,7 +160,7 @@ bool ExplicitSolver<Dim, Shape, Split, Transfer>::in_reach_of_body(std::size_t a
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 std::vector<SurfaceRole> ExplicitSolver<Dim, Shape, Split, Transfer>::surface_roles() const {
-  std::vector<SurfaceRole> role(velocity_.size(), SurfaceRole::any);
+  std::vector<SurfaceRole> role(grid_.active() * block_nodes, SurfaceRole::any);
   for (std::size_t a = 0; a < grid_.active(); ++a) {
     const NodeContact* contact = ground_.of_block(a);
     for (int n = 0; n < block_nodes; ++n) {
@@ -194,7 +211,7 @@ SolverState<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::state() const {
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::resume(Particles<Dim> particles, const SolverState<Dim>& s) {
   P_ = std::move(particles);
-  grid_.restore(s.blocks, s.first, P_.material);
+  grid_.restore(s.blocks, s.first, P_, options_.fields);
   lay_out();
   if (sleep_.active()) sleep_.restore(s.sleep_clocks);
   wave_speed_ = s.wave_speed;
@@ -231,7 +248,7 @@ double ExplicitSolver<Dim, Shape, Split, Transfer>::unbalanced_force_ratio(const
   double unbalanced = 0.0, weight = 0.0;
   for (std::size_t a = 0; a < grid_.active(); ++a) {
     Vec4 m[block_nodes], f[block_nodes];
-    gather_sums<Dim, Shape, true>(grid_, a, tiles.data(), beside.data(), m, f);
+    gather_sums<Dim, Shape, true>(grid_.tiles_around(a), tiles.data(), beside.data(), m, f);
     const NodeContact* contact = ground_.of_block(a);
     for (int n = 0; n < block_nodes; ++n) {
       if (m[n][0] <= mass_cutoff_ || (contact && contact[n].count > 0)) continue;

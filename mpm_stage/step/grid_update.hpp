@@ -14,9 +14,21 @@ namespace tailrun::mpm {
 // Sums over the nodes of one block (J; N s), added up in the order of the blocks afterwards.
 template <int Dim>
 struct GridSums {
-  double friction = 0.0, damping = 0.0, external = 0.0, impact = 0.0;
+  double friction = 0.0, contact = 0.0, damping = 0.0, external = 0.0, impact = 0.0;
   double kinetic_before = 0.0, kinetic_after = 0.0;  // of the nodes, at the step's ends
   std::array<double, Dim> impulse{};
+
+  GridSums& operator+=(const GridSums& o) {
+    friction += o.friction;
+    contact += o.contact;
+    damping += o.damping;
+    external += o.external;
+    impact += o.impact;
+    kinetic_before += o.kinetic_before;
+    kinetic_after += o.kinetic_after;
+    for (int d = 0; d < Dim; ++d) impulse[d] += o.impulse[d];
+    return *this;
+  }
 };
 
 template <int Dim>

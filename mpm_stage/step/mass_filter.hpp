@@ -23,34 +23,42 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::filter_velocity(double dt) {
   if (options_.fmpm_order < 2) return;
   const auto since = Clock::now();
   const auto complete = [this](AlignedVector<Vec4>& velocity) {
-    if (mirrors_.any()) mirrors_.reflect(velocity.data());
-    if (!extension_.active()) return;
-    extension_.extend(velocity.data());
-    if (mirrors_.any()) mirrors_.reflect(velocity.data());
-  };
-#pragma omp parallel for schedule(dynamic, 4)
-  for (std::size_t a = 0; a < grid_.active(); ++a) {
-    find_held(a, dt);
-    grid_sums_[a] = {};
-    std::copy_n(velocity_.data() + a * block_nodes, block_nodes, term_.data() + a * block_nodes);
-  }
-  for (int l = 1; l < options_.fmpm_order; ++l) {
-#pragma omp parallel for schedule(dynamic, 4)
-    for (std::size_t b = 0; b < grid_.occupied(); ++b) {
-      Vec4 velocity[tile_nodes];
-      load_tile<Dim, Shape>(grid_, b, term_.data(), velocity);
-      // The tiles are free between the nodes' sums and the next P2G.
-      Vec4* momentum = tiles_.data() + b * tile_nodes;
-      std::fill(momentum, momentum + tile_nodes, Vec4{});
-      apply_mass_matrix<Shape>(h1_, corner(b), P_, grid_.first_particle(b), grid_.last_particle(b), velocity, momentum);
+    for (int f = 0; f < fields_.count(); ++f) {
+      Vec4* of_field = velocity.data() + node_of(f, 0);
+      if (mirrors_.any()) mirrors_.reflect(of_field);
+      if (!extension_.active()) continue;
+      extension_.extend(of_field);
+      if (mirrors_.any()) mirrors_.reflect(of_field);
     }
+  };
+  const auto for_each_block = [this](auto action) {
 #pragma omp parallel for schedule(dynamic, 4)
     for (std::size_t a = 0; a < grid_.active(); ++a)
-      gather_tiles<Dim, Shape>(grid_, a, tiles_.data(), products_.data() + a * block_nodes);
-    if (mirrors_.any()) mirrors_.fold(products_.data());
-    if (extension_.active()) extension_.fold_force(sums_.data(), products_.data());
+      for (int f = 0; f < fields_.count(); ++f)
+        if (fields_.present(f, a)) action(f, a);
+  };
+  std::fill(grid_sums_.begin(), grid_sums_.end(), GridSums<Dim>{});
+  std::copy(velocity_.begin(), velocity_.end(), term_.begin());
+  for_each_block([&](int f, std::size_t a) { find_held(f, a, dt); });
+  for (int l = 1; l < options_.fmpm_order; ++l) {
 #pragma omp parallel for schedule(dynamic, 4)
-    for (std::size_t a = 0; a < grid_.active(); ++a) take_increment(a);
+    for (std::size_t b = 0; b < grid_.occupied(); ++b)
+      fields_.for_each_span(b, [&](const FieldSpan& span) {
+        Vec4 velocity[tile_nodes];
+        load_tile<Dim, Shape>(grid_, b, term_.data() + node_of(span.field, 0), velocity);
+        // The tiles are free between the nodes' sums and the next P2G.
+        Vec4* momentum = tiles_.data() + fields_.tile(span.field, b) * tile_nodes;
+        std::fill(momentum, momentum + tile_nodes, Vec4{});
+        apply_mass_matrix<Shape>(h1_, corner(b), P_, span.begin, span.end, velocity, momentum);
+      });
+    for_each_block([&](int f, std::size_t a) {
+      gather_tiles<Dim, Shape>(fields_.around(f, a), tiles_of(f), products_.data() + node_of(f, a));
+    });
+    for (int f = 0; f < fields_.count(); ++f) {
+      if (mirrors_.any()) mirrors_.fold(products_.data() + node_of(f, 0));
+      if (extension_.active()) extension_.fold_force(sums_.data() + node_of(f, 0), products_.data() + node_of(f, 0));
+    }
+    for_each_block([&](int f, std::size_t a) { take_increment(f, a); });
     for (const auto& [k, b] : nodes_in_bodies_) {
       for (int d = 0; d < Dim; ++d) {
         const double taken = -sums_[k][0] * term_[k][d];
@@ -63,27 +71,37 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::filter_velocity(double dt) {
 #pragma omp parallel for schedule(static)
     for (std::size_t k = 0; k < velocity_.size(); ++k) velocity_[k] += term_[k];
   }
-  if (ground_.any()) {
+  if (fields_.several()) {
+    // What the filter gives back must not push the fields into each other.
 #pragma omp parallel for schedule(dynamic, 4)
-    for (std::size_t a = 0; a < grid_.active(); ++a) keep_contact(a);
+    for (std::size_t a = 0; a < grid_.active(); ++a) {
+      if (!fields_.shared(a)) continue;
+      NodeSums node[most_fields];
+      for (int f = 0; f < fields_.count(); ++f) node[f].sum = sums_.data() + node_of(f, a);
+      part_fields(a, dt, false, node, grid_sums_[a]);
+    }
+  }
+  if (ground_.any()) {
+    for_each_block([&](int f, std::size_t a) { keep_contact(f, a); });
     for (const auto& [k, b] : nodes_in_bodies_) velocity_[k] = node_velocity<Dim>(body_velocity_[b].data());
     complete(velocity_);
   }
   for (const auto& s : grid_sums_) {
     work_.friction += s.friction;
+    work_.contact += s.contact;
     for (int d = 0; d < Dim; ++d) impulse_[d] += s.impulse[d];
   }
   add_time(seconds_.grid, since);
 }
 
-// The next term of block a's nodes, (I - m^-1 M) times the one before.
+// The next term of field f's nodes in block a, (I - m^-1 M) times the one before.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::take_increment(std::size_t a) {
-  for (std::size_t k = a * block_nodes; k < (a + 1) * block_nodes; ++k) {
+void ExplicitSolver<Dim, Shape, Split, Transfer>::take_increment(int f, std::size_t a) {
+  for (std::size_t k = node_of(f, a); k < node_of(f, a) + block_nodes; ++k) {
     const double m = sums_[k][0];
     term_[k] = m > mass_cutoff_ ? term_[k] - as_velocity<Dim>(products_[k]) * splat(1.0 / m) : Vec4{};
   }
-  for (const HeldNode& node : held_nodes_[a]) {
+  for (const HeldNode& node : held_nodes_[fields_.number(f, a)]) {
     if (!node.held.any()) continue;
     const double m = sums_[node.node][0];
     std::array<double, Dim> v;
@@ -96,18 +114,19 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::take_increment(std::size_t a) 
   }
 }
 
-// Which nodes of block a touch ground or frictional walls, and what holds them there.
+// Which of field f's nodes in block a touch ground or frictional walls, and what holds them there.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::find_held(std::size_t a, double dt) {
-  auto& found = held_nodes_[a];
+void ExplicitSolver<Dim, Shape, Split, Transfer>::find_held(int f, std::size_t a, double dt) {
+  auto& found = held_nodes_[fields_.number(f, a)];
   found.clear();
   const NodeContact* contact = ground_.of_block(a);
   if (!contact && !wall_nodes_.any) return;
   const double slack = 1e-12 * fastest_wave_;
   Gap gap[block_nodes];
-  if (contact) gather_tiles<Dim, Shape>(grid_, a, gap_tiles_.data(), gap);
+  if (contact)
+    gather_tiles<Dim, Shape>(fields_.around(f, a), gap_tiles_.data() + fields_.tile(f, 0) * tile_nodes, gap);
   for (int n = 0; n < block_nodes; ++n) {
-    const std::size_t k = a * block_nodes + static_cast<std::size_t>(n);
+    const std::size_t k = node_of(f, a) + static_cast<std::size_t>(n);
     if (sums_[k][0] <= mass_cutoff_) continue;
     std::array<double, Dim> v;
     for (int d = 0; d < Dim; ++d) v[d] = velocity_[k][d];
@@ -124,8 +143,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::find_held(std::size_t a, doubl
 
 // The filter must neither push nodes that were leaving the ground into it nor make those that slid go back.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::keep_contact(std::size_t a) {
-  for (const HeldNode& node : held_nodes_[a]) {
+void ExplicitSolver<Dim, Shape, Split, Transfer>::keep_contact(int f, std::size_t a) {
+  for (const HeldNode& node : held_nodes_[fields_.number(f, a)]) {
     if (!node.contact) continue;
     const double m = sums_[node.node][0];
     std::array<double, Dim> v;
@@ -134,7 +153,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::keep_contact(std::size_t a) {
     stop_approach<Dim>(*node.contact, m, node.allowed, v);
     // Friction has been booked with the velocity before the filter; the one after it displaces.
     if (const NodeGrip& grip = grip_[node.node]; grip.mass > 0.0) {
-      const double impulse = pooled_impulse(ground_, grip_, spread_, a, static_cast<int>(node.node % block_nodes));
+      const double impulse = pooled_impulse(ground_, grip_.data() + node_of(f, 0), spread_.data() + node_of(f, 0), a, static_cast<int>(node.node % block_nodes));
       grid_sums_[a].friction += impulse * friction_path<Dim>(grip, node.before, v);
     }
     for (int d = 0; d < Dim; ++d) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mpm_stage/boundary/field_contact.hpp"
 #include "mpm_stage/boundary/terrain.hpp"
 #include "mpm_stage/boundary/walls.hpp"
 #include "mpm_stage/grid/block_grid.hpp"
@@ -44,6 +45,8 @@ struct SolverOptions {
   double surface_share = 0.0;
   double local_damping = 0.0;  // 1, Cundall's
   SleepOptions sleep;
+  FieldChoice fields;
+  FieldContactLaw contact;  // between the fields
   double mass_cutoff = -1.0;  // 1, relative to the mean particle mass; negative: the shape function's own
 };
 
@@ -55,8 +58,9 @@ struct SolverOptions {
 // `impact` is what contact impulses J took beside friction: minus J . (v + v') / 2, with the node's velocities before
 // and after the step, less friction's share. Both are NaN where momentum and forces come to the nodes as one sum, from
 // which the nodes' velocity before the step cannot be told (APIC without damping, FMPM).
+// `friction` is that of the ground and of walls, `contact` that between velocity fields.
 struct WorkDone {
-  double plastic = 0.0, friction = 0.0, damping = 0.0, external = 0.0, removed = 0.0, pore_pressure = 0.0;
+  double plastic = 0.0, friction = 0.0, contact = 0.0, damping = 0.0, external = 0.0, removed = 0.0, pore_pressure = 0.0;
   double transfer = 0.0, impact = 0.0;
 };
 
@@ -78,6 +82,7 @@ struct StepReport {
 template <int Dim>
 struct GripMemory {
   std::vector<std::array<int, Dim>> blocks;
+  std::vector<int> fields;       // of each block
   std::vector<double> smoothed;  // m/s2, Block::nodes per block
 };
 

@@ -61,22 +61,22 @@ class MassRows {
   Vec4 rows_[4][Side][stride] = {};
 };
 
-// The sums of active block a's nodes over the tiles around it: (m, px, py, pz), and forces (0, fx, fy, fz) with Split.
+// The sums of an active block's nodes over the tiles around it: (m, px, py, pz), and forces (0, fx, fy, fz) with Split.
 template <int Dim, class Shape, bool Split>
-void gather_sums(const BlockGrid<Dim>& grid, std::size_t a, const Vec4* tiles, const SplitNode<Dim>* beside, Vec4* sum,
-                 Vec4* force) {
+void gather_sums(const std::array<int, Block<Dim>::neighbours>& around, const Vec4* tiles, const SplitNode<Dim>* beside,
+                 Vec4* sum, Vec4* force) {
   if constexpr (Split && Dim == 2) {
     Vec4 both[Block<Dim>::nodes];
     double mass[Block<Dim>::nodes];
-    gather_tiles<Dim, Shape>(grid, a, tiles, both);
-    gather_tiles<Dim, Shape>(grid, a, beside, mass);
+    gather_tiles<Dim, Shape>(around, tiles, both);
+    gather_tiles<Dim, Shape>(around, beside, mass);
     for (int n = 0; n < Block<Dim>::nodes; ++n) {
       sum[n] = __builtin_shufflevector(both[n], Vec4{mass[n]}, 4, 0, 1, 5);
       force[n] = __builtin_shufflevector(both[n], Vec4{}, 4, 2, 3, 4);
     }
   } else {
-    gather_tiles<Dim, Shape>(grid, a, tiles, sum);
-    if constexpr (Split) gather_tiles<Dim, Shape>(grid, a, beside, force);
+    gather_tiles<Dim, Shape>(around, tiles, sum);
+    if constexpr (Split) gather_tiles<Dim, Shape>(around, beside, force);
   }
 }
 

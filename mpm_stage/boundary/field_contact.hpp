@@ -1,0 +1,204 @@
+// Contact between the velocity fields at one node (Bardenhagen, Brackbill & Sulsky 2000, with other normals and another
+// strength).
+//
+// phi = 0 soil does not slide on stronger soil beside it as long as both share a velocity: it sticks, shears inside
+// itself over some three cells, and a slide's length depends on the cell. With a velocity of its own it slides as soon
+// as the shear stress reaches what it carries.
+//
+// Bodies i and j at a node, with velocities after forces and body acceleration and n from the centre of i to that of j:
+// the approach (v_i - v_j) . n is stopped, their sliding is braked by at most
+//   dt A min(s_i, s_j) + mu J,
+// where A is the part of the surface that is the node's (the larger of the two bodies' G . n, interface_sums.hpp: beside
+// a layer thinner than the node's reach, only the other one shows it whole), s the shear stress that the soil carries and
+// J the normal impulse. Impulses act on both, so momentum is exact, and each takes kinetic energy.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mpm_stage/boundary/soil_limit.hpp"
+#include "mpm_stage/boundary/half_spaces.hpp"
+#include "mpm_stage/grid/field_choice.hpp"
+#include "mpm_stage/transfer/interface_sums.hpp"
+
+namespace tailrun::mpm {
+
+enum class Opening { free, held };
+
+struct FieldContactLaw {
+  // 1, of the normal impulse; negative: what holds is the strength of the weaker soil alone.
+  double friction = -1.0;
+  Opening opening = Opening::free;
+};
+
+// Cells: centres that are farther apart than those of touching half-spaces by more than this have a gap between them.
+// Particles are no continuum: the centres of soil that touches scatter by about half of it.
+constexpr double open_gap = 0.15;
+
+// One field, or several that move as one, at a node.
+template <int Dim>
+struct BodyAtNode {
+  using Vector = std::array<double, Dim>;
+  double mass = 0.0;        // kg
+  Vector v{}, before{};     // m/s, after forces; at the step's start
+  double volume = 0.0;      // m3
+  Vector centre{};          // m, from the node
+  Vector surface{};         // m2, G
+  double strength = 0.0;    // Pa
+  bool firm = false;        // soil that does not flow: its particles show its surface best
+  bool on_ground = false;   // its approach to the ground has been stopped
+  double ground_push = 0.0; // N s, that the ground has to take besides
+
+  void add(const BodyAtNode& o) {
+    const double m = mass + o.mass, V = volume + o.volume;
+    for (int d = 0; d < Dim; ++d) {
+      v[d] = (mass * v[d] + o.mass * o.v[d]) / m;
+      before[d] = (mass * before[d] + o.mass * o.before[d]) / m;
+      centre[d] = (volume * centre[d] + o.volume * o.centre[d]) / V;
+      surface[d] += o.surface[d];
+    }
+    strength = (volume * strength + o.volume * o.strength) / V;
+    mass = m;
+    volume = V;
+  }
+};
+
+template <int Dim>
+BodyAtNode<Dim> body_at_node(double mass, const InterfaceNode& sums) {
+  BodyAtNode<Dim> body;
+  body.mass = mass;
+  body.volume = sums.first[0];
+  body.strength = sums.second[0] / body.volume;
+  for (int d = 0; d < Dim; ++d) {
+    body.centre[d] = sums.first[1 + d] / body.volume;
+    body.surface[d] = sums.second[1 + d];
+  }
+  return body;
+}
+
+template <int Dim>
+double along(const std::array<double, Dim>& a, const std::array<double, Dim>& b) {
+  double sum = 0.0;
+  for (int d = 0; d < Dim; ++d) sum += a[d] * b[d];
+  return sum;
+}
+
+// What contact does between two bodies of a node, worked out once and used in each round.
+template <int Dim>
+class ContactPair {
+ public:
+  using Vector = std::array<double, Dim>;
+  // `h` is the cell (m).
+  template <class Shape>
+  ContactPair(BodyAtNode<Dim>& i, BodyAtNode<Dim>& j, const FieldContactLaw& law, double h, double dt,
+              const HalfSpaces<Shape>& half)
+      : i_(&i), j_(&j), law_(law), reduced_(i.mass * j.mass / (i.mass + j.mass)) {
+    double distance = 0.0;
+    for (int d = 0; d < Dim; ++d) n_[d] = j.centre[d] - i.centre[d];
+    distance = std::sqrt(along<Dim>(n_, n_));
+    // Soils mixed through each other have no surface between them and move as one.
+    mixed_ = distance < 0.02 * h;
+    if (mixed_) return;
+    for (double& x : n_) x /= distance;
+    if (i.firm != j.firm) take_normal_of(i.firm ? i.surface : j.surface, i.firm ? 1.0 : -1.0);
+    // The larger body shows where its surface lies, however thin the other one is.
+    double cell = 1.0;
+    for (int d = 0; d < Dim; ++d) cell *= h;
+    const double share = std::max(i.volume, j.volume) / cell;
+    const bool flows = i.volume > j.volume ? !i.firm && j.firm : i.firm && !j.firm;
+    presses_ = !(flows && half.offset(share) > 0.5);
+    const double gap = distance - h * half.centres_apart(j.volume / (i.volume + j.volume)) - open_gap * h;
+    touches_ = gap <= 0.0 || law.opening == Opening::held;
+    allowed_ = touches_ ? 0.0 : gap / dt;
+    const double area = surface_of_both(half, cell, h);
+    const double strength = std::min(i.strength, j.strength);
+    cohesive_ = strength < no_soil_limit ? dt * area * strength : no_soil_limit;
+  }
+
+  double approach() const { return along<Dim>(i_->v, n_) - along<Dim>(j_->v, n_); }
+
+  // Adds to the normal impulse what stops the approach. Returns by how much the impulse changed.
+  double press() {
+    if (mixed_ || !presses_) return 0.0;
+    double impulse = normal_ + reduced_ * (approach() - allowed_);
+    if (law_.opening == Opening::free) impulse = std::max(0.0, impulse);
+    const double change = impulse - normal_;
+    normal_ = impulse;
+    push(n_, change);
+    return std::fabs(change);
+  }
+
+  // One of the two rests on the ground: it cannot give way, and passes on what presses it there.
+  void press_onto_ground() {
+    if (mixed_ || !presses_ || i_->on_ground == j_->on_ground) return;
+    const double more = approach() - allowed_;
+    if (more <= 0.0) return;
+    BodyAtNode<Dim>&free = i_->on_ground ? *j_ : *i_, &held = i_->on_ground ? *i_ : *j_;
+    const double sign = i_->on_ground ? 1.0 : -1.0;
+    for (int d = 0; d < Dim; ++d) free.v[d] += sign * more * n_[d];
+    held.ground_push += free.mass * more;
+    normal_ += free.mass * more;
+  }
+
+  // Brakes the sliding. Returns the work that it takes, J: the impulse times the sliding that is left.
+  double rub() {
+    std::array<double, Dim> slide;
+    for (int d = 0; d < Dim; ++d) slide[d] = i_->v[d] - j_->v[d];
+    if (mixed_) {
+      push(slide, reduced_);
+      return 0.0;
+    }
+    if (!touches_ && normal_ <= 0.0) return 0.0;
+    const double across = along<Dim>(slide, n_);
+    for (int d = 0; d < Dim; ++d) slide[d] -= across * n_[d];
+    const double speed = std::sqrt(along<Dim>(slide, slide));
+    if (speed <= 0.0) return 0.0;
+    double most = cohesive_;
+    if (law_.friction >= 0.0) most = std::min(cohesive_, law_.friction * std::max(0.0, normal_));
+    const double impulse = std::min(reduced_ * speed, most);
+    push(slide, impulse / speed);
+    return impulse * (speed - impulse / reduced_);
+  }
+
+ private:
+  void take_normal_of(const Vector& surface, double sign) {
+    const double size = std::sqrt(along<Dim>(surface, surface));
+    if (sign * along<Dim>(surface, n_) <= 0.5 * size) return;
+    for (int d = 0; d < Dim; ++d) n_[d] = sign * surface[d] / size;
+  }
+  // m2, of the surface between the bodies that is the node's. Where one of them is soil that does not flow, its particles
+  // show it best, unless it is a plate so thin that the node sees its other surface, too.
+  template <class Shape>
+  double surface_of_both(const HalfSpaces<Shape>& half, double cell, double h) const {
+    const double of_i = std::max(0.0, along<Dim>(i_->surface, n_)), of_j = std::max(0.0, -along<Dim>(j_->surface, n_));
+    if (i_->firm != j_->firm) {
+      const double firm = i_->firm ? of_i : of_j, volume = i_->firm ? i_->volume : j_->volume;
+      if (firm > 0.7 * half.slice(volume / cell) * cell / h) return firm;
+    }
+    return std::max(of_i, of_j);
+  }
+  // Body i loses `amount` times `direction` (N s) to body j.
+  void push(const std::array<double, Dim>& direction, double amount) {
+    for (int d = 0; d < Dim; ++d) {
+      i_->v[d] -= amount * direction[d] / i_->mass;
+      j_->v[d] += amount * direction[d] / j_->mass;
+    }
+  }
+
+  BodyAtNode<Dim>*i_, *j_;
+  FieldContactLaw law_;
+  Vector n_{};
+  double reduced_, allowed_ = 0.0, cohesive_ = 0.0, normal_ = 0.0;
+  bool mixed_ = false, presses_ = true, touches_ = false;
+};
+
+// Whether `weak` lies between the bodies a and b.
+template <int Dim>
+bool lies_between(const BodyAtNode<Dim>& weak, const BodyAtNode<Dim>& a, const BodyAtNode<Dim>& b) {
+  double product = 0.0;
+  for (int d = 0; d < Dim; ++d) product += (a.centre[d] - weak.centre[d]) * (b.centre[d] - weak.centre[d]);
+  return product < 0.0;
+}
+
+}  // namespace tailrun::mpm

@@ -1,0 +1,96 @@
+// Where the velocity fields are: each has sums and velocities of its own in the blocks that its particles reach, one
+// field's after the other's. Tile or node block k of field f stands at number f * (occupied or active blocks) + k.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "mpm_stage/grid/block_grid.hpp"
+
+namespace tailrun::mpm {
+
+// Consecutive particles of one block and one field.
+struct FieldSpan {
+  std::size_t begin, end;
+  int field;
+};
+
+template <int Dim>
+class FieldLayout {
+ public:
+  using Around = std::array<int, Block<Dim>::neighbours>;
+
+  // Call after each sort. One field needs no lists of its own.
+  void update(const BlockGrid<Dim>& grid, int count) {
+    grid_ = &grid;
+    count_ = count;
+    if (count_ == 1) return;
+    spans_.clear();
+    first_span_.clear();
+    std::vector<std::uint8_t> has(static_cast<std::size_t>(count_) * grid.occupied(), 0);
+    for (std::size_t b = 0; b < grid.occupied(); ++b) {
+      first_span_.push_back(spans_.size());
+      for (const Run& run : grid.runs(b)) {
+        if (spans_.size() == first_span_.back() || spans_.back().field != run.field)
+          spans_.push_back({run.begin, run.end, run.field});
+        spans_.back().end = run.end;
+        has[static_cast<std::size_t>(run.field) * grid.occupied() + b] = 1;
+      }
+    }
+    first_span_.push_back(spans_.size());
+
+    around_.resize(static_cast<std::size_t>(count_) * grid.active());
+    fields_at_.assign(grid.active(), 0);
+    for (int f = 0; f < count_; ++f)
+      for (std::size_t a = 0; a < grid.active(); ++a) {
+        Around& around = around_[number(f, a)];
+        around = grid.tiles_around(a);
+        bool any = false;
+        for (int& b : around) {
+          if (b >= 0 && !has[static_cast<std::size_t>(f) * grid.occupied() + static_cast<std::size_t>(b)]) b = -1;
+          any = any || b >= 0;
+        }
+        if (any) fields_at_[a] |= static_cast<std::uint8_t>(1U << f);
+      }
+    near_shared_.assign(grid.occupied(), 0);
+    for (std::size_t b = 0; b < grid.occupied(); ++b)
+      for (const int a : grid.active_around(b))
+        if (shared(static_cast<std::size_t>(a))) near_shared_[b] = 1;
+  }
+
+  int count() const { return count_; }
+  bool several() const { return count_ > 1; }
+  // Number of field f's node block a.
+  std::size_t number(int f, std::size_t a) const { return static_cast<std::size_t>(f) * grid_->active() + a; }
+  // Number of field f's tile of occupied block b.
+  std::size_t tile(int f, std::size_t b) const { return static_cast<std::size_t>(f) * grid_->occupied() + b; }
+  // Whether particles of field f reach active block a, and whether those of two fields do.
+  bool present(int f, std::size_t a) const { return count_ == 1 || (fields_at_[a] >> f & 1U) != 0; }
+  bool shared(std::size_t a) const { return count_ > 1 && (fields_at_[a] & (fields_at_[a] - 1U)) != 0; }
+  // Whether nodes that two fields reach may be among those of occupied block b's tile.
+  bool near_shared(std::size_t b) const { return count_ > 1 && near_shared_[b] != 0; }
+  // Occupied blocks around active block a that hold particles of field f; -1: none.
+  const Around& around(int f, std::size_t a) const {
+    return count_ == 1 ? grid_->tiles_around(a) : around_[number(f, a)];
+  }
+  // action(span) for the particles of occupied block b, field by field.
+  template <class Action>
+  void for_each_span(std::size_t b, Action action) const {
+    if (count_ == 1)
+      action(FieldSpan{grid_->first_particle(b), grid_->last_particle(b), 0});
+    else
+      for (std::size_t k = first_span_[b]; k < first_span_[b + 1]; ++k) action(spans_[k]);
+  }
+
+ private:
+  const BlockGrid<Dim>* grid_ = nullptr;
+  int count_ = 1;
+  std::vector<FieldSpan> spans_;
+  std::vector<std::size_t> first_span_;
+  std::vector<Around> around_;
+  std::vector<std::uint8_t> fields_at_, near_shared_;
+};
+
+}  // namespace tailrun::mpm
