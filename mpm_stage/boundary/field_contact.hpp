@@ -36,6 +36,10 @@ struct FieldContactLaw {
 // Particles are no continuum: the centres of soil that touches scatter by about half of it.
 constexpr double open_gap = 0.15;
 
+// Cells: a body whose centre lies farther from the node is there with the rim of its reach alone; that of a half-space
+// whose surface is 0.7 cells away lies there.
+constexpr double rim = 0.9;
+
 // One field, or several that move as one, at a node.
 template <int Dim>
 struct BodyAtNode {
@@ -102,16 +106,13 @@ class ContactPair {
     if (mixed_) return;
     for (double& x : n_) x /= distance;
     if (i.firm != j.firm) take_normal_of(i.firm ? i.surface : j.surface, i.firm ? 1.0 : -1.0);
-    // The larger body shows where its surface lies, however thin the other one is.
-    double cell = 1.0;
-    for (int d = 0; d < Dim; ++d) cell *= h;
-    const double share = std::max(i.volume, j.volume) / cell;
-    const bool flows = i.volume > j.volume ? !i.firm && j.firm : i.firm && !j.firm;
-    presses_ = !(flows && half.offset(share) > 0.5);
+    // Inside soil that flows, the node's velocity differs from that of the surface by what the soil strains in between;
+    // what is there of the firm body is the rim of its reach, and must not be taken along.
+    if (i.firm != j.firm) presses_ = std::fabs(along<Dim>(i.firm ? i.centre : j.centre, n_)) <= rim * h;
     const double gap = distance - h * half.centres_apart(j.volume / (i.volume + j.volume)) - open_gap * h;
     touches_ = gap <= 0.0 || law.opening == Opening::held;
     allowed_ = touches_ ? 0.0 : gap / dt;
-    const double area = surface_of_both(half, cell, h);
+    const double area = surface_of_both(half, h);
     const double strength = std::min(i.strength, j.strength);
     cohesive_ = strength < no_soil_limit ? dt * area * strength : no_soil_limit;
   }
@@ -170,7 +171,9 @@ class ContactPair {
   // m2, of the surface between the bodies that is the node's. Where one of them is soil that does not flow, its particles
   // show it best, unless it is a plate so thin that the node sees its other surface, too.
   template <class Shape>
-  double surface_of_both(const HalfSpaces<Shape>& half, double cell, double h) const {
+  double surface_of_both(const HalfSpaces<Shape>& half, double h) const {
+    double cell = 1.0;
+    for (int d = 0; d < Dim; ++d) cell *= h;
     const double of_i = std::max(0.0, along<Dim>(i_->surface, n_)), of_j = std::max(0.0, -along<Dim>(j_->surface, n_));
     if (i_->firm != j_->firm) {
       const double firm = i_->firm ? of_i : of_j, volume = i_->firm ? i_->volume : j_->volume;

@@ -154,6 +154,11 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::settle_on_ground(std::size_t a
     for (int i = 0; i < bodies.count; ++i)
       for (int j = i + 1; j < bodies.count; ++j)
         ContactPair<Dim>(bodies.body[i], bodies.body[j], options_.contact, h_, dt, half_spaces_).press_onto_ground();
+    // Nor is the other pushed into the ground.
+    for (int b = 0; b < bodies.count; ++b) {
+      const double approach = -along_normal(contact[n], free.body[b].v);
+      stop_approach<Dim>(contact[n], bodies.body[b].mass, std::max(0.0, approach), bodies.body[b].v);
+    }
     for (int f = 0; f < fields_.count(); ++f) {
       const int b = bodies.of_field[f];
       if (b < 0) continue;
