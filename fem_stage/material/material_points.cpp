@@ -146,11 +146,16 @@ UpdateReport MaterialPoints::update(std::span<const double> strain_increment, st
   long substeps = 0;
   int failed = std::numeric_limits<int>::max();
   // Liquefied points cost a hundred times a settled one, so work is handed out in small blocks; every point's result is
-  // its own, so the order does not matter. A single block is not worth waking the other threads.
+  // its own, so the order does not matter. One team for all models: a thread that finds no block of one model left goes
+  // on to the next. Models of a single block each are not worth waking the other threads.
+  bool worth_a_team = false;
+  groups_->for_each_group([&](const auto& group) { worth_a_team |= group.points.size() > update_block; });
+#pragma omp parallel if (worth_a_team) reduction(+ : substeps) reduction(min : failed)
   groups_->for_each_group([&](auto& group) {
-    auto& model = group.store;
     const std::vector<std::size_t>& points = group.points;
-    const auto update_points = [&](long block, long& work, int& first_failure) {
+    const long blocks = static_cast<long>((points.size() + update_block - 1) / update_block);
+#pragma omp for schedule(dynamic, 1) nowait
+    for (long block = 0; block < blocks; ++block) {
       const std::size_t first = update_block * static_cast<std::size_t>(block);
       const std::size_t count = std::min(update_block, points.size() - first);
       std::array<StrainIncrement, update_block> strain;
@@ -159,24 +164,17 @@ UpdateReport MaterialPoints::update(std::span<const double> strain_increment, st
         const double* e = strain_increment.data() + 3 * points[first + k];
         strain[k] = {e[0], e[1], e[2]};
       }
-      model.update(first, std::span(strain.data(), count), std::span(done.data(), count));
+      group.store.update(first, std::span(strain.data(), count), std::span(done.data(), count));
       for (std::size_t k = 0; k < count; ++k) {
         const std::size_t point = points[first + k];
         if (done[k] < 0) {
-          first_failure = std::min(first_failure, static_cast<int>(point));
+          failed = std::min(failed, static_cast<int>(point));
         } else {
-          work += done[k];
+          substeps += done[k];
         }
-        store(model.trial_stress(first + k), effective_stress, point);
+        store(group.store.trial_stress(first + k), effective_stress, point);
       }
-    };
-    const long blocks = static_cast<long>((points.size() + update_block - 1) / update_block);
-    if (blocks <= 1) {
-      if (blocks == 1) update_points(0, substeps, failed);
-      return;
     }
-#pragma omp parallel for schedule(dynamic, 1) reduction(+ : substeps) reduction(min : failed)
-    for (long block = 0; block < blocks; ++block) update_points(block, substeps, failed);
   });
   UpdateReport report;
   report.substeps = substeps;
