@@ -26,9 +26,9 @@
 #include "fem_stage/element_test/element_test.hpp"
 #include "fem_stage/mesh/gmsh_mesh.hpp"
 #include "fem_stage/output/state_file.hpp"
-#include "fem_stage/output/summary.hpp"
 #include "fem_stage/stage/geostatic.hpp"
 #include "fem_stage/stage/shake.hpp"
+#include "fem_stage/stage/summary.hpp"
 
 using namespace tailrun;
 using namespace tailrun::fem;

@@ -4,9 +4,18 @@
 #include <cmath>
 #include <set>
 
-#include "fem_stage/model/fem_case.hpp"
-
 namespace tailrun::fem {
+
+double phreatic_elevation(const std::vector<double>& line, double x) {
+  const std::size_t rows = line.size() / 2;
+  if (x <= line[0]) return line[1];
+  for (std::size_t i = 1; i < rows; ++i) {
+    if (x > line[2 * i]) continue;
+    const double s = (x - line[2 * i - 2]) / (line[2 * i] - line[2 * i - 2]);
+    return line[2 * i - 1] + s * (line[2 * i + 1] - line[2 * i - 1]);
+  }
+  return line[2 * rows - 1];
+}
 
 std::vector<char> on_or_above_phreatic_line(const Mesh& mesh, const std::vector<double>& line) {
   std::vector<char> above(mesh.nodes(), 1);

@@ -8,6 +8,9 @@
 
 namespace tailrun::fem {
 
+// Elevation (m) of the phreatic line at x; the end values outside its range. `line` (k, 2).
+double phreatic_elevation(const std::vector<double>& line, double x);
+
 // (N): 1 where the node lies on or above the line (m, (k, 2)); all 1 when the line is empty (a dry model).
 std::vector<char> on_or_above_phreatic_line(const Mesh& mesh, const std::vector<double>& line);
 

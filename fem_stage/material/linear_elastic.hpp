@@ -1,39 +1,41 @@
-// Isotropic linear elasticity in plane strain. Tension positive, Pa.
+// Isotropic linear elasticity, "linear_elastic": rock, and soil where the answer is known in closed form.
 #pragma once
 
-#include <limits>
+#include "fem_stage/material/elastic_plastic_points.hpp"
+#include "fem_stage/material/material_keys.hpp"
 
 namespace tailrun::fem {
 
+struct LinearElasticLaw {
+  static constexpr bool has_yield = false;
+  double shear_modulus = 0.0;  // Pa
+  double poisson = 0.3;
+
+  void set_post_shaking(bool) {}
+};
+
 struct LinearElasticParameters {
-  static constexpr double unset = std::numeric_limits<double>::quiet_NaN();
-  //                                     symbol  unit    default    admissible
-  double shear_modulus = unset;  // G       Pa      required   > 0
-  double poisson = 0.3;          // nu      1       0.3        [0, 0.5)
-  double density = unset;        // rho     kg/m3   required   > 0
-  double porosity = 0.4;         // n       1       0.4        [0, 1)
+  static constexpr std::string_view model_name = "linear_elastic";
+  using Points = ElasticPlasticPoints<LinearElasticLaw>;
+
+  double shear_modulus = unset;  // G
+  double poisson = 0.3;          // nu
+  double density = unset;        // rho of the saturated soil
+  double pore_share = 0.4;       // n
+
+  static LinearElasticParameters read(const CaseNode& node) {
+    LinearElasticParameters p;
+    read_number(node, "poisson_ratio", "1", Range::between(0.0, 0.4999), p.poisson);
+    p.shear_modulus = read_shear_modulus(node, p.poisson);
+    p.density = node.number("density", "kg/m3", Range::positive());
+    read_number(node, "porosity", "1", {0.0, 1.0, false, true}, p.pore_share);
+    return p;
+  }
+  double porosity() const { return pore_share; }
 };
 
-// Effective stress (xx, yy, zz, xy).
-struct PlaneStrainStress {
-  double xx = 0.0;
-  double yy = 0.0;
-  double zz = 0.0;
-  double xy = 0.0;
-};
-
-// K = 2/3 G (1 + nu)/(1 - 2 nu): the three-dimensional relation.
-inline double bulk_modulus(double shear_modulus, double poisson) {
-  return shear_modulus * 2.0 * (1.0 + poisson) / (3.0 * (1.0 - 2.0 * poisson));
-}
-
-// Stress after a strain increment (engineering shear), eps_zz = 0.
-inline PlaneStrainStress elastic_stress(const PlaneStrainStress& stress, double G, double poisson, double eps_xx,
-                                        double eps_yy, double gamma_xy) {
-  const double lame = 2.0 * G * poisson / (1.0 - 2.0 * poisson);
-  const double pressure = lame * (eps_xx + eps_yy);
-  return {stress.xx + pressure + 2.0 * G * eps_xx, stress.yy + pressure + 2.0 * G * eps_yy, stress.zz + pressure,
-          stress.xy + G * gamma_xy};
+inline LinearElasticLaw resolve(const LinearElasticParameters& given) {
+  return {given.shear_modulus, given.poisson};
 }
 
 }  // namespace tailrun::fem

@@ -7,35 +7,41 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <ranges>
+#include <tuple>
 
 #include "common/error.hpp"
-#include "fem_stage/material/material_group.hpp"
 
 namespace tailrun::fem {
+
+namespace {
+
+// The points of one model. Laws by material index; points hold pointers into them, so they are never resized after
+// construction.
+template <class Parameters>
+struct Group {
+  using Store = typename Parameters::Points;
+  std::vector<typename Store::Law> laws;
+  Store store;
+  std::vector<std::size_t> points;  // global index of each
+};
+
+}  // namespace
 
 struct MaterialPoints::Groups {
   std::vector<MaterialDefinition> materials;
   std::vector<int> material_of_point;
-  // Laws by material index; a group's points hold pointers into these, so they are never resized after construction.
-  std::vector<Pm4SandLaw> sand_laws;
-  std::vector<Pm4SiltLaw> silt_laws;
-  std::vector<ElasticPlasticLaw> elastic_laws;
-  Pm4Group<Pm4SandLaw> sand;
-  Pm4Group<Pm4SiltLaw> silt;
-  ElasticPlasticGroup elastic;
-  std::vector<std::size_t> sand_points, silt_points, elastic_points;  // global index of a group's points
+  Models::Each<Group> of_model;
 
   template <class Function>
   void for_each_group(Function&& function) {
-    function(sand, sand_points);
-    function(silt, silt_points);
-    function(elastic, elastic_points);
+    std::apply([&](auto&... group) { (function(group), ...); }, of_model);
   }
-  // Calls function(group, index in group, global index) for every point, in order.
+  // Calls function(store, index in it, global index) for every point, model by model.
   template <class Function>
   void for_each(Function&& function) {
-    for_each_group([&](auto& group, const std::vector<std::size_t>& points) {
-      for (std::size_t i = 0; i < points.size(); ++i) function(group, i, points[i]);
+    for_each_group([&](auto& group) {
+      for (std::size_t i = 0; i < group.points.size(); ++i) function(group.store, i, group.points[i]);
     });
   }
 };
@@ -62,49 +68,31 @@ void require_size(std::size_t found, std::size_t wanted, const char* what) {
   }
 }
 
-ElasticPlasticLaw elastic_plastic_law(const MaterialDefinition& material) {
-  if (const auto* p = std::get_if<MohrCoulombParameters>(&material.model)) {
-    return {p->shear_modulus, p->poisson, true, resolve(*p)};
-  }
-  const auto& p = std::get<LinearElasticParameters>(material.model);
-  return {p.shear_modulus, p.poisson, false, {}};
-}
-
 }  // namespace
 
 MaterialPoints::MaterialPoints(std::vector<MaterialDefinition> materials, std::vector<int> material_of_point)
     : groups_(std::make_unique<Groups>()) {
   Groups& g = *groups_;
   const std::size_t count = materials.size();
-  g.sand_laws.resize(count);
-  g.silt_laws.resize(count);
-  g.elastic_laws.resize(count);
-  for (std::size_t k = 0; k < count; ++k) {
-    if (const auto* sand = std::get_if<Pm4SandParameters>(&materials[k].model)) {
-      g.sand_laws[k] = resolve(*sand);
-    } else if (const auto* silt = std::get_if<Pm4SiltParameters>(&materials[k].model)) {
-      g.silt_laws[k] = resolve(*silt);
-    } else {
-      g.elastic_laws[k] = elastic_plastic_law(materials[k]);
-    }
-  }
   for (std::size_t point = 0; point < material_of_point.size(); ++point) {
     const int k = material_of_point[point];
     if (k < 0 || static_cast<std::size_t>(k) >= count) {
       throw InputError("material points: point " + std::to_string(point) + " has material index " + std::to_string(k) +
                        "; there are " + std::to_string(count) + " materials");
     }
-    if (std::holds_alternative<Pm4SandParameters>(materials[k].model)) {
-      g.sand.add(&g.sand_laws[k]);
-      g.sand_points.push_back(point);
-    } else if (std::holds_alternative<Pm4SiltParameters>(materials[k].model)) {
-      g.silt.add(&g.silt_laws[k]);
-      g.silt_points.push_back(point);
-    } else {
-      g.elastic.add(&g.elastic_laws[k]);
-      g.elastic_points.push_back(point);
-    }
   }
+  g.for_each_group([&]<class Parameters>(Group<Parameters>& group) {
+    group.laws.resize(count);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (const auto* given = std::get_if<Parameters>(&materials[k].model)) group.laws[k] = resolve(*given);
+    }
+    for (std::size_t point = 0; point < material_of_point.size(); ++point) {
+      const auto k = static_cast<std::size_t>(material_of_point[point]);
+      if (!std::holds_alternative<Parameters>(materials[k].model)) continue;
+      group.store.add(&group.laws[k]);
+      group.points.push_back(point);
+    }
+  });
   g.materials = std::move(materials);
   g.material_of_point = std::move(material_of_point);
   set_stress(std::vector<double>(4 * size(), 0.0));
@@ -127,27 +115,28 @@ const std::vector<int>& MaterialPoints::material_of_point() const {
 void MaterialPoints::set_stress(std::span<const double> effective_stress) {
   require_size(effective_stress.size(), 4 * size(), "effective_stress");
   groups_->for_each(
-      [&](auto& group, std::size_t i, std::size_t point) { group.set_stress(i, row(effective_stress, point)); });
+      [&](auto& model, std::size_t i, std::size_t point) { model.set_stress(i, row(effective_stress, point)); });
 }
 
 void MaterialPoints::start_elastic_stage(std::span<const double> poisson_override) {
   if (!poisson_override.empty()) {
     require_size(poisson_override.size(), groups_->materials.size(), "poisson_override");
   }
-  groups_->for_each([&](auto& group, std::size_t i, std::size_t point) {
+  groups_->for_each([&](auto& model, std::size_t i, std::size_t point) {
     const double keep = std::numeric_limits<double>::quiet_NaN();
-    group.start_elastic_stage(i, poisson_override.empty() ? keep : poisson_override[groups_->material_of_point[point]]);
+    model.start_elastic_stage(i, poisson_override.empty() ? keep : poisson_override[groups_->material_of_point[point]]);
   });
 }
 
 void MaterialPoints::start_plastic_stage(bool recompute_limits) {
-  groups_->for_each([&](auto& group, std::size_t i, std::size_t) { group.start_plastic_stage(i, recompute_limits); });
+  groups_->for_each([&](auto& model, std::size_t i, std::size_t) { model.start_plastic_stage(i, recompute_limits); });
 }
 
 void MaterialPoints::set_post_shaking(bool on) {
-  for (Pm4SandLaw& law : groups_->sand_laws) law.post_shaking = on;
-  for (Pm4SiltLaw& law : groups_->silt_laws) law.post_shaking = on;
-  groups_->for_each([](auto& group, std::size_t i, std::size_t) { group.refresh_moduli(i); });
+  groups_->for_each_group([on](auto& group) {
+    for (auto& law : group.laws) law.set_post_shaking(on);
+  });
+  groups_->for_each([](auto& model, std::size_t i, std::size_t) { model.refresh_moduli(i); });
 }
 
 UpdateReport MaterialPoints::update(std::span<const double> strain_increment, std::span<double> effective_stress) {
@@ -157,9 +146,16 @@ UpdateReport MaterialPoints::update(std::span<const double> strain_increment, st
   long substeps = 0;
   int failed = std::numeric_limits<int>::max();
   // Liquefied points cost a hundred times a settled one, so work is handed out in small blocks; every point's result is
-  // its own, so the order does not matter. A single block is not worth waking the other threads.
-  groups_->for_each_group([&](auto& group, const std::vector<std::size_t>& points) {
-    const auto update_points = [&](long block, long& work, int& first_failure) {
+  // its own, so the order does not matter. One team for all models: a thread that finds no block of one model left goes
+  // on to the next. Models of a single block each are not worth waking the other threads.
+  bool worth_a_team = false;
+  groups_->for_each_group([&](const auto& group) { worth_a_team |= group.points.size() > update_block; });
+#pragma omp parallel if (worth_a_team) reduction(+ : substeps) reduction(min : failed)
+  groups_->for_each_group([&](auto& group) {
+    const std::vector<std::size_t>& points = group.points;
+    const long blocks = static_cast<long>((points.size() + update_block - 1) / update_block);
+#pragma omp for schedule(dynamic, 1) nowait
+    for (long block = 0; block < blocks; ++block) {
       const std::size_t first = update_block * static_cast<std::size_t>(block);
       const std::size_t count = std::min(update_block, points.size() - first);
       std::array<StrainIncrement, update_block> strain;
@@ -168,24 +164,17 @@ UpdateReport MaterialPoints::update(std::span<const double> strain_increment, st
         const double* e = strain_increment.data() + 3 * points[first + k];
         strain[k] = {e[0], e[1], e[2]};
       }
-      group.update(first, std::span(strain.data(), count), std::span(done.data(), count));
+      group.store.update(first, std::span(strain.data(), count), std::span(done.data(), count));
       for (std::size_t k = 0; k < count; ++k) {
         const std::size_t point = points[first + k];
         if (done[k] < 0) {
-          first_failure = std::min(first_failure, static_cast<int>(point));
+          failed = std::min(failed, static_cast<int>(point));
         } else {
-          work += done[k];
+          substeps += done[k];
         }
-        store(group.trial_stress(first + k), effective_stress, point);
+        store(group.store.trial_stress(first + k), effective_stress, point);
       }
-    };
-    const long blocks = static_cast<long>((points.size() + update_block - 1) / update_block);
-    if (blocks <= 1) {
-      if (blocks == 1) update_points(0, substeps, failed);
-      return;
     }
-#pragma omp parallel for schedule(dynamic, 1) reduction(+ : substeps) reduction(min : failed)
-    for (long block = 0; block < blocks; ++block) update_points(block, substeps, failed);
   });
   UpdateReport report;
   report.substeps = substeps;
@@ -200,27 +189,27 @@ UpdateReport MaterialPoints::update(std::span<const double> strain_increment, st
 }
 
 void MaterialPoints::commit() {
-  groups_->for_each([](auto& group, std::size_t i, std::size_t) { group.commit(i); });
+  groups_->for_each([](auto& model, std::size_t i, std::size_t) { model.commit(i); });
 }
 
 void MaterialPoints::committed_stress(std::span<double> effective_stress) const {
   require_size(effective_stress.size(), 4 * size(), "effective_stress");
-  groups_->for_each([&](auto& group, std::size_t i, std::size_t point) {
-    store(group.committed_stress(i), effective_stress, point);
+  groups_->for_each([&](auto& model, std::size_t i, std::size_t point) {
+    store(model.committed_stress(i), effective_stress, point);
   });
 }
 
 void MaterialPoints::elastic_moduli(std::span<double> bulk, std::span<double> shear) const {
-  groups_->for_each([&](auto& group, std::size_t i, std::size_t point) {
-    bulk[point] = group.bulk(i);
-    shear[point] = group.shear(i);
+  groups_->for_each([&](auto& model, std::size_t i, std::size_t point) {
+    bulk[point] = model.bulk(i);
+    shear[point] = model.shear(i);
   });
 }
 
 void MaterialPoints::initial_moduli(std::span<double> bulk, std::span<double> shear) const {
-  groups_->for_each([&](auto& group, std::size_t i, std::size_t point) {
-    bulk[point] = group.initial_bulk(i);
-    shear[point] = group.initial_shear(i);
+  groups_->for_each([&](auto& model, std::size_t i, std::size_t point) {
+    bulk[point] = model.initial_bulk(i);
+    shear[point] = model.initial_shear(i);
   });
 }
 
@@ -233,38 +222,52 @@ void MaterialPoints::porosity(std::span<double> out) const {
 }
 
 std::size_t MaterialPoints::state_size() const {
-  return std::max(
-      {decltype(groups_->sand)::state_size, decltype(groups_->silt)::state_size, ElasticPlasticGroup::state_size});
+  std::size_t largest = 0;
+  groups_->for_each_group(
+      [&]<class Parameters>(const Group<Parameters>&) { largest = std::max(largest, Parameters::Points::state_size); });
+  return largest;
 }
 
 std::vector<double> MaterialPoints::save_state() const {
   std::vector<double> state(size() * state_size(), 0.0);
   groups_->for_each(
-      [&](auto& group, std::size_t i, std::size_t point) { group.save(i, state.data() + point * state_size()); });
+      [&](auto& model, std::size_t i, std::size_t point) { model.save(i, state.data() + point * state_size()); });
   return state;
 }
 
 const std::vector<std::string>& MaterialPoints::internal_variable_names() {
-  return internal_variable_name_list();
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    const auto add = [&](std::string_view name) {
+      if (std::find(all.begin(), all.end(), name) == all.end()) all.emplace_back(name);
+    };
+    std::apply([&]<class... P>(const Group<P>&...) { (std::ranges::for_each(P::Points::variables, add), ...); },
+               Models::Each<Group>{});
+    return all;
+  }();
+  return names;
 }
 
 void MaterialPoints::internal_variable(std::string_view name, std::span<double> out) const {
-  const std::vector<std::string>& names = internal_variable_name_list();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
+  const std::vector<std::string>& names = internal_variable_names();
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
     throw InputError("no internal variable is called '" + std::string(name) + "'." + did_you_mean(name, names) +
                      " Known: " + joined(names));
   }
   require_size(out.size(), size(), "internal_variable's result");
-  const auto which = static_cast<InternalVariable>(found - names.begin());
-  groups_->for_each(
-      [&](auto& group, std::size_t i, std::size_t point) { out[point] = group.internal_variable(i, which); });
+  groups_->for_each_group([&]<class Parameters>(const Group<Parameters>& group) {
+    const auto& known = Parameters::Points::variables;
+    const auto which = static_cast<std::size_t>(std::find(known.begin(), known.end(), name) - known.begin());
+    for (std::size_t i = 0; i < group.points.size(); ++i) {
+      out[group.points[i]] = which < known.size() ? group.store.internal_variable(i, which) : no_such_variable;
+    }
+  });
 }
 
 void MaterialPoints::restore_state(std::span<const double> state) {
   require_size(state.size(), size() * state_size(), "saved state");
   groups_->for_each(
-      [&](auto& group, std::size_t i, std::size_t point) { group.restore(i, state.data() + point * state_size()); });
+      [&](auto& model, std::size_t i, std::size_t point) { model.restore(i, state.data() + point * state_size()); });
 }
 
 }  // namespace tailrun::fem

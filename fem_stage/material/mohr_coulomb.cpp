@@ -163,9 +163,23 @@ double largest_excess(const MohrCoulombLaw& law, const Principal& s) {
 
 }  // namespace
 
+MohrCoulombParameters MohrCoulombParameters::read(const CaseNode& node) {
+  MohrCoulombParameters p;
+  read_number(node, "poisson_ratio", "1", Range::between(0.0, 0.4999), p.poisson);
+  p.shear_modulus = read_shear_modulus(node, p.poisson);
+  p.cohesion = node.number("cohesion", "Pa", Range::non_negative());
+  p.friction_angle = node.number("friction_angle", "deg", Range::between(0.0, 60.0));
+  read_number(node, "dilation_angle", "deg", Range::between(0.0, p.friction_angle), p.dilation_angle);
+  read_number(node, "tension_cutoff", "Pa", Range::non_negative(), p.tension_cutoff);
+  p.density = node.number("density", "kg/m3", Range::positive());
+  read_number(node, "porosity", "1", {0.0, 1.0, false, true}, p.pore_share);
+  return p;
+}
+
 MohrCoulombLaw resolve(const MohrCoulombParameters& given) {
   MohrCoulombLaw law;
-  law.given = given;
+  law.shear_modulus = given.shear_modulus;
+  law.poisson = given.poisson;
   const double phi = given.friction_angle * std::numbers::pi / 180.0;
   const double psi = given.dilation_angle * std::numbers::pi / 180.0;
   law.k = (1.0 + std::sin(phi)) / (1.0 - std::sin(phi));
@@ -175,6 +189,10 @@ MohrCoulombLaw resolve(const MohrCoulombParameters& given) {
   const double apex = std::tan(phi) > 1e-9 ? given.cohesion / std::tan(phi) : std::numeric_limits<double>::infinity();
   law.cutoff = std::min(given.tension_cutoff, apex);
   return law;
+}
+
+MohrCoulombReturn MohrCoulombLaw::to_yield(const PlaneStrainStress& trial) const {
+  return return_to_yield(*this, shear_modulus, poisson, trial);
 }
 
 double yield_excess(const MohrCoulombLaw& law, const PlaneStrainStress& stress) {

@@ -3,35 +3,29 @@
 // plane, an edge, or a corner, whichever satisfies all conditions. Tension positive, Pa.
 #pragma once
 
-#include <limits>
-
-#include "fem_stage/material/linear_elastic.hpp"
+#include "fem_stage/material/elastic_plastic_points.hpp"
+#include "fem_stage/material/material_keys.hpp"
 
 namespace tailrun::fem {
 
+struct MohrCoulombLaw;
+
 struct MohrCoulombParameters {
-  static constexpr double unset = std::numeric_limits<double>::quiet_NaN();
-  //                                     symbol   unit    default              admissible
-  double shear_modulus = unset;   // G        Pa      required             > 0
-  double poisson = 0.3;           // nu       1       0.3                  [0, 0.5)
-  double cohesion = unset;        // c'       Pa      required             >= 0
-  double friction_angle = unset;  // phi'     deg     required             [0, 60]
-  double dilation_angle = 0.0;    // psi      deg     0                    [0, phi']
-  double tension_cutoff = 0.0;    // sigma_t  Pa      0                    [0, c'/tan phi']
-  double density = unset;         // rho      kg/m3   required             > 0
-  double porosity = 0.4;          // n        1       0.4                  [0, 1)
-};
+  static constexpr std::string_view model_name = "mohr_coulomb";
+  using Points = ElasticPlasticPoints<MohrCoulombLaw>;
 
-// Resolved constants. Principal stresses are ordered 1 >= 2 >= 3; the planes are k s_i - s_j <= strength.
-struct MohrCoulombLaw {
-  MohrCoulombParameters given;
-  double k = 1.0;         // (1 + sin phi)/(1 - sin phi)
-  double k_psi = 1.0;     // (1 + sin psi)/(1 - sin psi)
-  double strength = 0.0;  // 2 c sqrt(k)
-  double cutoff = 0.0;    // largest tensile stress, never above c/tan phi
-};
+  double shear_modulus = unset;   // G
+  double poisson = 0.3;           // nu
+  double cohesion = unset;        // c'
+  double friction_angle = unset;  // phi'
+  double dilation_angle = 0.0;    // psi
+  double tension_cutoff = 0.0;    // sigma_t; c'/tan phi' where it is more
+  double density = unset;         // rho of the saturated soil
+  double pore_share = 0.4;        // n
 
-MohrCoulombLaw resolve(const MohrCoulombParameters& parameters);
+  static MohrCoulombParameters read(const CaseNode& node);
+  double porosity() const { return pore_share; }
+};
 
 struct MohrCoulombReturn {
   PlaneStrainStress stress;
@@ -39,6 +33,22 @@ struct MohrCoulombReturn {
   double plastic_strain = 0.0;  // increment of the equivalent deviatoric plastic strain sqrt(2/3 e:e)
   double plastic_volume = 0.0;  // increment of the volumetric plastic strain, extension positive
 };
+
+// Resolved constants. Principal stresses are ordered 1 >= 2 >= 3; the planes are k s_i - s_j <= strength.
+struct MohrCoulombLaw {
+  static constexpr bool has_yield = true;
+  double shear_modulus = 0.0;
+  double poisson = 0.3;
+  double k = 1.0;         // (1 + sin phi)/(1 - sin phi)
+  double k_psi = 1.0;     // (1 + sin psi)/(1 - sin psi)
+  double strength = 0.0;  // 2 c sqrt(k)
+  double cutoff = 0.0;    // largest tensile stress, never above c/tan phi
+
+  MohrCoulombReturn to_yield(const PlaneStrainStress& trial) const;
+  void set_post_shaking(bool) {}
+};
+
+MohrCoulombLaw resolve(const MohrCoulombParameters& parameters);
 
 // Stress on or inside the yield surface from an elastic trial stress, with the moduli G and poisson.
 MohrCoulombReturn return_to_yield(const MohrCoulombLaw& law, double G, double poisson, const PlaneStrainStress& trial);

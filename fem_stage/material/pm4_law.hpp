@@ -43,6 +43,8 @@ struct Pm4Law {
   Pm4Compatibility compatibility = Pm4Compatibility::improved;
   Pm4BoundingClip bounding_clip = Pm4BoundingClip::always;
   bool post_shaking = false;
+
+  void set_post_shaking(bool on) { post_shaking = on; }
 };
 
 inline double bulk_over_shear_of(double poisson) {

@@ -1,5 +1,5 @@
 // One material point of PM4Sand or PM4Silt through its life: elastic stage, initialisation from a stress, trial update,
-// commit. Compression positive inside; the callers (material_points.cpp) turn signs at the door.
+// commit. Compression positive inside; pm4_points.hpp turns signs at the door.
 #pragma once
 
 #include <optional>

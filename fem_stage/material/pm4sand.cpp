@@ -2,6 +2,8 @@
 
 #include <numbers>
 
+#include "fem_stage/material/pm4_keys.hpp"
+
 namespace tailrun::fem {
 
 namespace {
@@ -9,6 +11,22 @@ double either(double given, double fallback) {
   return std::isnan(given) ? fallback : given;
 }
 }  // namespace
+
+Pm4SandParameters Pm4SandParameters::read(const CaseNode& node) {
+  Pm4SandParameters p;
+  p.relative_density = node.number("relative_density", "1", Range::open(0.0, 1.2));
+  read_optional(node, "G0", "1", Range::positive(), p.shear_coefficient);
+  read_pm4_keys(node, Pm4BoundingClip::always, p);
+  read_number(node, "e_min", "1", Range::positive(), p.e_min);
+  read_number(node, "e_max", "1", {p.e_min, Range::any().high, true, false}, p.e_max);
+  read_number(node, "n_b", "1", Range::non_negative(), p.n_b);
+  read_optional(node, "C_DR", "1", Range::positive(), p.C_DR);
+  read_number(node, "Q", "1", Range::positive(), p.Q);
+  read_number(node, "R", "1", Range::positive(), p.R);
+  read_optional(node, "F_sed_min", "1", {0.0, 1.0, true, false}, p.F_sed_min);
+  read_optional(node, "p_sed_o", "Pa", Range::positive(), p.p_sed_o);
+  return p;
+}
 
 Pm4SandLaw resolve(const Pm4SandParameters& given) {
   Pm4SandLaw law;
@@ -32,8 +50,7 @@ Pm4SandLaw resolve(const Pm4SandParameters& given) {
   law.C_GD = given.C_GD;
   law.C_DR = either(given.C_DR, std::min(5.0 + 25.0 * (D_R - 0.35), 10.0));
   law.index0 = D_R;
-  const double e0 = given.e_max - D_R * (given.e_max - given.e_min);
-  law.index_slope = (1.0 + e0) / (given.e_max - given.e_min);
+  law.index_slope = (1.0 + given.initial_void_ratio()) / (given.e_max - given.e_min);
   law.tolerance = 1e-10 * given.atmospheric_pressure;
   law.compatibility = given.compatibility;
   law.bounding_clip = given.bounding_clip;

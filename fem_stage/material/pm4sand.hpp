@@ -1,42 +1,49 @@
 // PM4Sand version 3.1 (Boulanger & Ziotopoulou 2017, report UCD/CGM-17/01), plane strain, effective stress.
 #pragma once
 
-#include <limits>
-
-#include "fem_stage/material/pm4_law.hpp"
+#include "fem_stage/material/material_keys.hpp"
+#include "fem_stage/material/pm4_points.hpp"
 
 namespace tailrun::fem {
 
-// NaN stands for "use the default given on the right".
+struct Pm4SandLaw;
+
+// Where a number stays unset, resolve() and set_initial_constants() use what is on the right. Units and ranges are in
+// read(), pm4_keys.hpp has those that PM4Silt shares.
 struct Pm4SandParameters {
-  static constexpr double unset = std::numeric_limits<double>::quiet_NaN();
-  //                                       symbol      unit    default                                  admissible
-  double relative_density = unset;        // D_R         1       required                                 (0, 1.2)
-  double shear_coefficient = unset;       // G_0         1       167 sqrt(46 D_R^2 + 2.5)                 > 0
-  double contraction_rate = unset;        // h_po        1       required (calibrated)                    > 0
-  double density = unset;                 // rho         kg/m3   required (saturated bulk density)        > 0
-  double atmospheric_pressure = 101.3e3;  // p_A       Pa      101300                                   > 0
-  double hardening_ratio = unset;         // h_0         1       max(0.30, (0.25 + D_R)/2)                > 0
-  double e_max = 0.8;                     // e_max       1       0.8                                      > e_min
-  double e_min = 0.5;                     // e_min       1       0.5                                      > 0
-  double n_b = 0.5;                       // n_b         1       0.5                                      >= 0
-  double n_d = 0.1;                       // n_d         1       0.1                                      >= 0
-  double A_do = unset;                    // A_do        1       from M_b, M_d at initialisation          > 0
-  double z_max = unset;                   // z_max       1       min(0.7 exp(-6.1 xi_R0), 20)             > 0
-  double c_z = 250.0;                     // c_z         1       250                                      >= 0
-  double C_epsilon = unset;               // C_eps       1       0.5 (D_R <= .55) ... 0.2 (D_R >= .75)    > 0
-  double phi_cv = 33.0;                   // phi_cv      deg     33                                       (0, 60)
-  double poisson = 0.3;                   // nu          1       0.3                                      [0, 0.5]
-  double C_GD = 2.0;                      // C_GD        1       2.0                                      >= 1
-  double C_DR = unset;                    // C_DR        1       min(5 + 25 (D_R - .35), 10)              > 0
-  double C_Kaf = unset;                   // C_Kalphaf   1       5 + 220 (D_R - .26)^3 in [4, 35]         >= 0
-  double Q = 10.0;                        // Q           1       10                                       > 0
-  double R = 1.5;                         // R           1       1.5                                      > 0
-  double m = 0.01;                        // m           1       0.01 (cone radius)                       (0, 0.1]
-  double F_sed_min = unset;               // F_sed,min   1       min(0.03 exp(2.6 D_R), 0.99)             (0, 1]
-  double p_sed_o = unset;                 // p_sed,o     Pa      p_A/5                                    > 0
+  static constexpr std::string_view model_name = "pm4sand";
+  using Points = Pm4Points<Pm4SandLaw>;
+
+  double relative_density = unset;        // D_R
+  double shear_coefficient = unset;       // G_0: 167 sqrt(46 D_R^2 + 2.5)
+  double contraction_rate = unset;        // h_po, calibrated
+  double density = unset;                 // rho of the saturated soil
+  double atmospheric_pressure = 101.3e3;  // p_A
+  double hardening_ratio = unset;         // h_0: max(0.30, (0.25 + D_R)/2)
+  double e_max = 0.8;
+  double e_min = 0.5;
+  double n_b = 0.5;          // exponent of the bounding surface
+  double n_d = 0.1;          // of the dilatancy surface
+  double A_do = unset;       // dilatancy: from M_b and M_d at the start
+  double z_max = unset;      // fabric limit: min(0.7 exp(-6.1 xi_R0), 20)
+  double c_z = 250.0;        // fabric growth
+  double C_epsilon = unset;  // strain accumulation: 0.5 (D_R <= 0.55) to 0.2 (D_R >= 0.75)
+  double phi_cv = 33.0;      // friction angle at critical state
+  double poisson = 0.3;      // nu
+  double C_GD = 2.0;         // G falls to 1/C_GD with fabric
+  double C_DR = unset;       // dilatancy rises with D_R: min(5 + 25 (D_R - 0.35), 10)
+  double C_Kaf = unset;      // static shear and fabric in K_p: 5 + 220 (D_R - 0.26)^3 in [4, 35]
+  double Q = 10.0;           // Bolton's critical state line
+  double R = 1.5;
+  double m = 0.01;           // radius of the yield cone
+  double F_sed_min = unset;  // reconsolidation: min(0.03 exp(2.6 D_R), 0.99)
+  double p_sed_o = unset;    // reconsolidation: p_A/5
   Pm4Compatibility compatibility = Pm4Compatibility::improved;
   Pm4BoundingClip bounding_clip = Pm4BoundingClip::always;
+
+  static Pm4SandParameters read(const CaseNode& node);
+  double initial_void_ratio() const { return e_max - relative_density * (e_max - e_min); }
+  double porosity() const { return initial_void_ratio() / (1.0 + initial_void_ratio()); }
 };
 
 // The resolved material and the functions in which it differs from PM4Silt.
@@ -85,7 +92,7 @@ struct Pm4SandLaw : Pm4Law {
   }
 };
 
-// Defaults filled in. The parameters must be in their ranges (read_material checks them).
+// Defaults filled in. The parameters must be in their ranges (read() checks them).
 Pm4SandLaw resolve(const Pm4SandParameters& parameters);
 
 // The constants of a point that starts from the mean stress p0 and the vertical effective stress (compression

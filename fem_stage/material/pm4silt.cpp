@@ -2,6 +2,8 @@
 
 #include <numbers>
 
+#include "fem_stage/material/pm4_keys.hpp"
+
 namespace tailrun::fem {
 
 namespace {
@@ -12,6 +14,28 @@ double ratio_of(double degrees) {
   return 2.0 * std::sin(degrees * std::numbers::pi / 180.0);
 }
 }  // namespace
+
+Pm4SiltParameters Pm4SiltParameters::read(const CaseNode& node) {
+  Pm4SiltParameters p;
+  read_optional(node, "strength", "Pa", Range::positive(), p.strength);
+  read_optional(node, "strength_ratio", "1", Range::positive(), p.strength_ratio);
+  if (std::isnan(p.strength) && std::isnan(p.strength_ratio)) {
+    node.fail("strength_ratio", "missing; give strength (S_u,cs, Pa) or strength_ratio (S_u,cs/sigma'_v0)");
+  }
+  read_number(node, "strength_reduction", "1", Range::positive(), p.strength_reduction);
+  p.shear_coefficient = node.number("G0", "1", Range::positive());
+  // OpenSees clips PM4Silt in simple shear only.
+  read_pm4_keys(node, Pm4BoundingClip::simple_shear, p);
+  read_number(node, "n_G", "1", Range::between(0.0, 1.0), p.modulus_exponent);
+  read_number(node, "void_ratio", "1", Range::positive(), p.void_ratio);
+  read_number(node, "lambda", "1", Range::positive(), p.lambda);
+  read_number(node, "n_b_wet", "1", Range::between(0.01, 1.0), p.n_b_wet);
+  read_number(node, "n_b_dry", "1", Range::positive(), p.n_b_dry);
+  read_optional(node, "r_u_max", "1", {0.0, 1.0, false, true}, p.r_u_max);
+  read_number(node, "C_G_consolidation", "1", {1.0}, p.C_G_consolidation);
+  read_number(node, "phi_b_max", "deg", {p.phi_cv, 90.0, true, false}, p.phi_b_max);
+  return p;
+}
 
 Pm4SiltLaw resolve(const Pm4SiltParameters& given) {
   Pm4SiltLaw law;

@@ -3,44 +3,50 @@
 // pm4_memory and the integrators.
 #pragma once
 
-#include <limits>
-
-#include "fem_stage/material/pm4_law.hpp"
+#include "fem_stage/material/material_keys.hpp"
+#include "fem_stage/material/pm4_points.hpp"
 
 namespace tailrun::fem {
 
-// NaN stands for "use the default given on the right". One of the two strengths must be given; the absolute one wins.
+struct Pm4SiltLaw;
+
+// Where a number stays unset, set_initial_constants() uses what is on the right. One of the two strengths is given; the
+// absolute one wins. Units and ranges are in read(), pm4_keys.hpp has those that PM4Sand shares.
 struct Pm4SiltParameters {
-  static constexpr double unset = std::numeric_limits<double>::quiet_NaN();
-  //                                       symbol           unit    default                                admissible
-  double strength = unset;                // S_u,cs           Pa      strength_ratio sigma'_v0               > 0
-  double strength_ratio = unset;          // S_u,cs/sigma'_v0 1       strength/sigma'_v0                     > 0
-  double strength_reduction = 1.0;        // F_su             1       1                                      > 0
-  double shear_coefficient = unset;       // G_0              1       required                               > 0
-  double contraction_rate = unset;        // h_po             1       required (calibrated)                  > 0
-  double density = unset;                 // rho              kg/m3   required                               > 0
-  double atmospheric_pressure = 101.3e3;  // p_A            Pa      101300                                 > 0
-  double modulus_exponent = 0.75;         // n_G              1       0.75                                   [0, 1]
-  double hardening_ratio = 0.5;           // h_0              1       0.5                                    > 0
-  double void_ratio = 0.90;               // e_0              1       0.90                                   > 0
-  double lambda = 0.060;                  // lambda           1       0.060 (CSL slope in e - ln p)          > 0
-  double phi_cv = 32.0;                   // phi_cv           deg     32                                     (0, 60)
-  double n_b_wet = 0.8;                   // n_b,wet          1       0.8                                    [0.01, 1]
-  double n_b_dry = 0.5;                   // n_b,dry          1       0.5                                    > 0
-  double n_d = 0.3;                       // n_d              1       0.3                                    >= 0
-  double A_do = 0.8;                      // A_do             1       0.8                                    > 0
-  double r_u_max = unset;                 // r_u,max          1       none: p_min = p_cs/8                   [0, 1)
-  double z_max = unset;                   // z_max            1       10 ... 20 with the strength ratio      > 0
-  double c_z = 100.0;                     // c_z              1       100                                    >= 0
-  double C_epsilon = unset;               // C_eps            1       min(1.3, 0.5 + 1.2<S_u/s_v - 0.25>)    > 0
-  double C_GD = 3.0;                      // C_GD             1       3.0                                    >= 1
-  double C_Kaf = 4.0;                     // C_Kalphaf        1       4.0                                    >= 0
-  double poisson = 0.3;                   // nu               1       0.3                                    [0, 0.5]
-  double m = 0.01;                        // m                1       0.01                                   (0, 0.1]
-  double C_G_consolidation = 2.0;         // C_Gconsol        1       2.0                                    >= 1
-  double phi_b_max = 60.0;  // phi_b,max        deg     60: M_b,max = 2 sin phi_b,max          (phi_cv, 90)
+  static constexpr std::string_view model_name = "pm4silt";
+  using Points = Pm4Points<Pm4SiltLaw>;
+
+  double strength = unset;                // S_u,cs: strength_ratio sigma'_v0
+  double strength_ratio = unset;          // S_u,cs/sigma'_v0
+  double strength_reduction = 1.0;        // F_su
+  double shear_coefficient = unset;       // G_0
+  double contraction_rate = unset;        // h_po, calibrated
+  double density = unset;                 // rho of the saturated soil
+  double atmospheric_pressure = 101.3e3;  // p_A
+  double modulus_exponent = 0.75;         // n_G
+  double hardening_ratio = 0.5;           // h_0
+  double void_ratio = 0.90;               // e_0
+  double lambda = 0.060;                  // slope of the critical state line in e - ln p
+  double phi_cv = 32.0;                   // friction angle at critical state
+  double n_b_wet = 0.8;                   // exponents of the bounding surface, loose and dense of critical
+  double n_b_dry = 0.5;
+  double n_d = 0.3;                // of the dilatancy surface
+  double A_do = 0.8;               // dilatancy
+  double r_u_max = unset;          // limits p_min, which is p_cs/8
+  double z_max = unset;            // fabric limit: 10 to 20 with the strength ratio
+  double c_z = 100.0;              // fabric growth
+  double C_epsilon = unset;        // strain accumulation: min(1.3, 0.5 + 1.2 <S_u/s_v - 0.25>)
+  double C_GD = 3.0;               // G falls to 1/C_GD with fabric
+  double C_Kaf = 4.0;              // static shear and fabric in K_p
+  double poisson = 0.3;            // nu
+  double m = 0.01;                 // radius of the yield cone
+  double C_G_consolidation = 2.0;  // reconsolidation
+  double phi_b_max = 60.0;         // M_b,max = 2 sin phi_b,max
   Pm4Compatibility compatibility = Pm4Compatibility::improved;
   Pm4BoundingClip bounding_clip = Pm4BoundingClip::always;
+
+  static Pm4SiltParameters read(const CaseNode& node);
+  double porosity() const { return void_ratio / (1.0 + void_ratio); }
 };
 
 struct Pm4SiltLaw : Pm4Law {
@@ -91,7 +97,7 @@ struct Pm4SiltLaw : Pm4Law {
   }
 };
 
-// Defaults filled in. The parameters must be in their ranges (read_material checks them).
+// Defaults filled in. The parameters must be in their ranges (read() checks them).
 Pm4SiltLaw resolve(const Pm4SiltParameters& parameters);
 
 // p_min, p_cs, z_max and C_eps of a point that starts from mean stress p0 and the vertical effective stress

@@ -226,15 +226,4 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
   return out;
 }
 
-double phreatic_elevation(const std::vector<double>& line, double x) {
-  const std::size_t rows = line.size() / 2;
-  if (x <= line[0]) return line[1];
-  for (std::size_t i = 1; i < rows; ++i) {
-    if (x > line[2 * i]) continue;
-    const double s = (x - line[2 * i - 2]) / (line[2 * i] - line[2 * i - 2]);
-    return line[2 * i - 1] + s * (line[2 * i + 1] - line[2 * i - 1]);
-  }
-  return line[2 * rows - 1];
-}
-
 }  // namespace tailrun::fem

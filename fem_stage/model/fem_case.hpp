@@ -122,7 +122,4 @@ struct FemCase {
 // Throws InputError. `size` chooses from "mesh"/"sizes"; empty takes "default" when there is one.
 FemCase read_fem_case(const std::filesystem::path& path, const std::string& size);
 
-// Elevation (m) of the phreatic line at x; the end values outside its range. `line` (k, 2).
-double phreatic_elevation(const std::vector<double>& line, double x);
-
 }  // namespace tailrun::fem

@@ -9,9 +9,9 @@
 
 #include "common/error.hpp"
 #include "fem_stage/boundary/phreatic_line.hpp"
-#include "fem_stage/boundary/soft_fluid.hpp"
-#include "fem_stage/boundary/stage_freedoms.hpp"
 #include "fem_stage/mesh/gmsh_mesh.hpp"
+#include "fem_stage/model/soft_fluid.hpp"
+#include "fem_stage/model/stage_freedoms.hpp"
 
 namespace tailrun::fem {
 namespace {

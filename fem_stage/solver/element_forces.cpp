@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "fem_stage/boundary/soft_fluid.hpp"
+#include "fem_stage/model/soft_fluid.hpp"
 #include "fem_stage/solver/averaged_mass.hpp"
 
 namespace tailrun::fem {

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "common/progress.hpp"
-#include "fem_stage/boundary/stage_freedoms.hpp"
+#include "fem_stage/model/stage_freedoms.hpp"
 #include "fem_stage/output/history.hpp"
 #include "fem_stage/output/state_file.hpp"
 

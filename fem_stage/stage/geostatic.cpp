@@ -10,7 +10,7 @@
 #include "common/error.hpp"
 #include "common/progress.hpp"
 #include "fem_stage/boundary/phreatic_line.hpp"
-#include "fem_stage/boundary/stage_freedoms.hpp"
+#include "fem_stage/model/stage_freedoms.hpp"
 #include "fem_stage/solver/newmark.hpp"
 
 namespace tailrun::fem {

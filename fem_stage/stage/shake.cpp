@@ -9,9 +9,9 @@
 
 #include "common/error.hpp"
 #include "common/progress.hpp"
-#include "fem_stage/boundary/free_field.hpp"
-#include "fem_stage/boundary/stage_freedoms.hpp"
+#include "fem_stage/model/stage_freedoms.hpp"
 #include "fem_stage/output/state_file.hpp"
+#include "fem_stage/stage/free_field.hpp"
 
 namespace tailrun::fem {
 namespace {

@@ -18,8 +18,8 @@
 #include <memory>
 
 #include "common/error.hpp"
-#include "fem_stage/boundary/stage_freedoms.hpp"
 #include "fem_stage/mesh/gmsh_mesh.hpp"
+#include "fem_stage/model/stage_freedoms.hpp"
 #include "fem_stage/solver/element_forces.hpp"
 #include "fem_stage/solver/symmetric_system.hpp"
 #include "fem_stage/stage/geostatic.hpp"

@@ -12,9 +12,9 @@
 #include <cmath>
 #include <string>
 
-#include "fem_stage/material/material_group.hpp"
 #include "fem_stage/material/material_points.hpp"
 #include "fem_stage/material/pm4_point.hpp"
+#include "fem_stage/material/point_store.hpp"
 
 namespace {
 

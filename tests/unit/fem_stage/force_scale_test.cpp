@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "fem_stage/boundary/stage_freedoms.hpp"
 #include "fem_stage/mesh/gmsh_mesh.hpp"
 #include "fem_stage/model/model.hpp"
+#include "fem_stage/model/stage_freedoms.hpp"
 
 using namespace tailrun::fem;
 

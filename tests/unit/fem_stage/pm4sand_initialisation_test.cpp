@@ -41,7 +41,7 @@ TEST_CASE("PM4Sand: constants at initialisation, loose of critical") {
 
 TEST_CASE("PM4Sand: shear modulus coefficient follows (N1)60 = 46 D_R^2 when it is not given") {
   Pm4SandParameters p = loose();
-  p.shear_coefficient = Pm4SandParameters::unset;
+  p.shear_coefficient = unset;
   CHECK(resolve(p).G0_pA == doctest::Approx(476.0 * 101.3e3).epsilon(1e-3));
 }
 

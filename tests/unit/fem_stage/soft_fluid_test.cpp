@@ -1,5 +1,5 @@
 // The soft fluid above the phreatic line: its modulus, where it lies, what it holds and how it flows.
-#include "fem_stage/boundary/soft_fluid.hpp"
+#include "fem_stage/model/soft_fluid.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,8 +7,8 @@
 #include <fstream>
 
 #include "common/error.hpp"
-#include "fem_stage/boundary/stage_freedoms.hpp"
 #include "fem_stage/mesh/gmsh_mesh.hpp"
+#include "fem_stage/model/stage_freedoms.hpp"
 
 using namespace tailrun;
 using namespace tailrun::fem;

@@ -1,4 +1,4 @@
-#include "fem_stage/boundary/stage_freedoms.hpp"
+#include "fem_stage/model/stage_freedoms.hpp"
 
 #include <fmt/format.h>
 

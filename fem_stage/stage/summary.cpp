@@ -1,4 +1,4 @@
-#include "fem_stage/output/summary.hpp"
+#include "fem_stage/stage/summary.hpp"
 
 #include <omp.h>
 

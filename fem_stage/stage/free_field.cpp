@@ -1,4 +1,4 @@
-#include "fem_stage/boundary/free_field.hpp"
+#include "fem_stage/stage/free_field.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,12 @@
-#include "fem_stage/boundary/soft_fluid.hpp"
-#include "common/element_mean.hpp"
+#include "fem_stage/model/soft_fluid.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+
+#include "common/element_mean.hpp"
+#include "fem_stage/boundary/phreatic_line.hpp"
 
 namespace tailrun::fem {
 
