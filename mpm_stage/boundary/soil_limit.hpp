@@ -18,7 +18,7 @@ constexpr double no_soil_limit = 1e30;  // Pa
 
 // Pa; `cohesion` is the particle's.
 inline double soil_limit(const MaterialConstants& k, double cohesion) {
-  return k.model == Model::tresca && !k.softens && k.consistency == 0.0 ? cohesion : no_soil_limit;
+  return k.phi_zero && !k.softens && k.consistency == 0.0 ? cohesion : no_soil_limit;
 }
 
 }  // namespace tailrun::mpm
