@@ -13,7 +13,7 @@ PAGES = {
                     "fem_stage/element_test/calibration.cpp"],
     "docs/mpm.md": ["mpm_stage/scene/scene_reader.cpp", "mpm_stage/scene/material_reader.cpp",
                     "mpm_stage/scene/terrain_reader.cpp", "mpm_stage/scene/particle_generator.cpp",
-                    "mpm_stage/scene/body_reader.cpp"],
+                    "mpm_stage/scene/body_reader.cpp", "mpm_stage/material/*.cpp"],
 }
 READERS = ("number|number_or|number_if|integer|integer_or|boolean_or|text|text_or|texts_or|choice|choice_or|numbers|numbers_or|"
            "table|file|object|object_if|object_or_empty|list|list_or_empty")
@@ -24,8 +24,8 @@ def main():
     missing, known = [], 0
     for page, sources in PAGES.items():
         content = (root / page).read_text()
-        for name in sources:
-            text = (root / name).read_text()
+        for path in (path for pattern in sources for path in sorted(root.glob(pattern))):
+            name, text = path.relative_to(root), path.read_text()
             keys = set(re.findall(rf'[.>](?:{READERS})\(\s*"(\w+)"', text))
             keys |= set(re.findall(r'(?:optional_number|read_points)\(node, "(\w+)"', text))
             known += len(keys)
