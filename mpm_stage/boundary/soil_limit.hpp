@@ -19,15 +19,14 @@ constexpr double no_soil_limit = 1e30;  // Pa
 
 // Pa; `cohesion` is the particle's.
 inline double soil_limit(const MaterialConstants& k, double cohesion) {
-  return k.model == Model::tresca && !k.softens && k.consistency == 0.0 ? cohesion : no_soil_limit;
+  return k.phi_zero && !k.softens && k.consistency == 0.0 ? cohesion : no_soil_limit;
 }
 
 // Pa, of soil beside soil of another field: phi = 0 soil that softens carries what is left of its cohesion, a fluid
 // without viscosity nothing.
 inline double interface_strength(const MaterialConstants& k, double cohesion, double plastic_strain) {
-  if (k.consistency != 0.0) return no_soil_limit;
-  if (k.model == Model::newtonian_fluid) return 0.0;
-  if (k.model != Model::tresca) return no_soil_limit;
+  if (!k.flows || k.consistency != 0.0 || k.explicit_viscosity != 0.0) return no_soil_limit;
+  if (!k.phi_zero) return 0.0;
   return k.softens ? softened_cohesion(k, cohesion, softening_share(k, plastic_strain)) : cohesion;
 }
 

@@ -1,13 +1,19 @@
 // What a particle can be made of: parameters as the case file gives them, and the constants that the stress update of a
-// run of particles needs, worked out once.
+// run of particles needs, worked out once. Both hold what several laws share; what one law alone knows is in `own`.
+//
+// The rest of the stage asks for properties (phi_zero, relaxed, explicit_viscosity, MaterialLaw::moves ...), never for
+// a model by its name.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
+#include "mpm_stage/material/material_law.hpp"
+#include "mpm_stage/material/own_numbers.hpp"
+
 namespace tailrun::mpm {
 
-enum class Model { linear_elastic, mohr_coulomb, tresca, newtonian_fluid, rigid };
 enum class PorePressure { total, frozen, undrained };
 enum class SofteningShape { linear, exponential };
 
@@ -32,11 +38,11 @@ struct RateLaw {
 
 struct Material {
   std::string name;
-  Model model = Model::linear_elastic;
+  const MaterialLaw* law = &law_named("linear_elastic");
   double density = 0.0;                  // kg/m3; needed where particles are made here, and by newtonian_fluid
   double youngs_modulus = 0.0;           // Pa
   double poisson_ratio = 0.0;            // 1
-  double bulk_modulus = 0.0;             // Pa, newtonian_fluid
+  double bulk_modulus = 0.0;             // Pa, of fluids
   double cohesion = 0.0;                 // Pa
   bool cohesion_from_particles = false;  // residual_strength of the particles file
   double cohesion_factor = 1.0;          // 1, on a cohesion that came from the particles
@@ -46,34 +52,42 @@ struct Material {
   double friction_angle = 0.0;           // degrees
   double dilation_angle = 0.0;           // degrees
   double tension_cutoff = -1.0;          // Pa, largest principal tension; negative: none
-  bool allow_tension = false;            // newtonian_fluid: pressure may fall under zero
   bool average_volumetric_strain = true;
   Softening softening;
   RateLaw rate;
   PorePressure pore_pressure = PorePressure::total;
   double pore_stiffness = 0.0;  // Pa, K_f / n, for undrained
+  OwnNumbers own;
 };
 
-// Constants of the stress update, in the letters of the formulae.
+// Constants of the stress update, in the letters of the formulae, and what the step asks of a material.
 struct MaterialConstants {
-  Model model = Model::linear_elastic;
-  double lambda = 0.0, mu = 0.0, bulk = 0.0;              // Pa, Lame constants and K
-  double sin_phi = 0.0, sin_phi_residual = 0.0, m = 1.0;  // m = (1 + sin psi) / (1 - sin psi)
-  double tension = -1.0;                                  // Pa
-  double reference_density = 0.0;                         // kg/m3
+  // The law's loops, chosen at set-up: a run of particles costs one call, a particle none.
+  LawLoops<2> plane;
+  LawLoops<3> solid;
+
+  double lambda = 0.0, mu = 0.0, bulk = 0.0;  // Pa, Lame constants and K
+  double tension = -1.0;                      // Pa
+  double reference_density = 0.0;             // kg/m3
   bool softens = false, exponential = false;
   double soften_start = 0.0, soften_scale = 1.0;  // 1, after scaling with the cell size
   double cohesion_ratio = 1.0;
-  double consistency = 0.0, exponent = 1.0;
-  bool allow_tension = false, averaged = true;
-  // Mean stress relaxes only where strength does not depend on it: frictional soil would be pushed over its yield
-  // surface again and again, and each return would compact it a little.
-  bool relaxed = true;
+  double consistency = 0.0, exponent = 1.0;  // Pa s^n and 1, of strength that grows with the rate of shear
   PorePressure pore_pressure = PorePressure::total;
   double pore_stiffness = 0.0;
-  // m3/kg, of Mohr-Coulomb and Tresca soil. Soil that comes apart carries no stress but would go on counting the
-  // opening voids as its own volume; its density would go to nothing and its wave speed would take the time step along.
+  // m3/kg, of soil that yields. Soil that comes apart carries no stress but would go on counting the opening voids as
+  // its own volume; its density would go to nothing and its wave speed would take the time step along.
   double largest_specific_volume = 1e300;
+  OwnNumbers own;
+
+  // Properties.
+  bool averaged = true;  // its volumetric strain, over neighbouring cells
+  // Mean stress relaxes only where strength does not depend on it: frictional soil would be pushed over its yield
+  // surface again and again, and each return would compact it a little.
+  bool relaxed = false;
+  bool flows = false;     // as MaterialLaw::flows
+  bool phi_zero = false;  // its particles' strength is all the shear that it carries, whatever the mean stress
+  double explicit_viscosity = 0.0;  // Pa s, of viscous stress that limits the time step (h^2 rho / eta); 0: none
 
   // Pa, of a longitudinal wave: K + 4 G / 3 and the stiffness of the pore fluid where it counts.
   double wave_modulus() const {
@@ -83,7 +97,5 @@ struct MaterialConstants {
 
 // `cell_size` (m) regularises softening. Plane strain and 3-D have the same constants.
 MaterialConstants constants_of(const Material& material, double cell_size);
-
-std::string model_name(Model model);
 
 }  // namespace tailrun::mpm

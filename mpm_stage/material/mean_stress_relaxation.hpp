@@ -14,7 +14,7 @@
 
 namespace tailrun::mpm {
 
-// Scales shift[0 .. end - begin) (Pa) of the particles begin .. end of a Tresca material before their stress update.
+// Scales shift[0 .. end - begin) (Pa) of the particles begin .. end of a phi = 0 material before their stress update.
 template <int Dim>
 void relax_by_used_strength(const MaterialConstants& k, const Particles<Dim>& P, std::size_t begin, std::size_t end,
                             double* shift) {

@@ -22,11 +22,6 @@ template <class Real>
   return peak * (k.cohesion_ratio + (1.0 - k.cohesion_ratio) * share);
 }
 
-template <class Real>
-[[gnu::always_inline]] inline Real softened_sin_phi(const MaterialConstants& k, Real share) {
-  return k.sin_phi_residual + (k.sin_phi - k.sin_phi_residual) * share;
-}
-
 // Pa, strength added by the rate of shear `rate` (1/s, sqrt(2 e':e')): tau = tau_y + K rate^n.
 template <class Real>
 [[gnu::always_inline]] inline Real rate_strength(const MaterialConstants& k, Real rate) {

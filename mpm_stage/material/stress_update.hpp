@@ -1,5 +1,5 @@
-// The stress of a run of particles of one material after a step: rotate, add the elastic increment, return to the yield
-// surface; volume and pore pressure follow.
+// The stress of a run of particles of one material after a step, by the material's law; volume and pore pressure
+// follow.
 #pragma once
 
 #include <cstddef>
@@ -23,8 +23,7 @@ StressWork update_stress(const MaterialConstants& material, Particles<2>& P, std
 StressWork update_stress(const MaterialConstants& material, Particles<3>& P, std::size_t begin, std::size_t end,
                          const double* trace, const double* shift, double dt);
 
-// Recoverable energy of the stresses, J: s : C^-1 : s / 2 (elastic and elasto-plastic solids), K (ln J)^2 / 2 of the
-// fluid, and u^2 / (2 K_f / n) of undrained pore water.
+// Recoverable energy of the stresses, J, and of undrained pore water.
 double elastic_energy(const MaterialConstants& material, const Particles<2>& P, std::size_t begin, std::size_t end);
 double elastic_energy(const MaterialConstants& material, const Particles<3>& P, std::size_t begin, std::size_t end);
 

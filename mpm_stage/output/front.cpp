@@ -15,7 +15,7 @@ template <int Dim>
 FrontSeries<Dim>::FrontSeries(const Scene& scene) : output_(scene.output), start_(scene.particles.position) {
   bool any = false;
   for (const auto& m : scene.materials) {
-    moving_.push_back(m.model != Model::linear_elastic && m.model != Model::rigid);
+    moving_.push_back(m.law->moves);
     any = any || moving_.back();
   }
   if (!any) moving_.assign(moving_.size(), true);

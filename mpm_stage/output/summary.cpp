@@ -43,8 +43,8 @@ Json features(const Scene& scene) {
   bool pore = false, undrained = false, softening = false, rate = false, cutoff = false, average = false,
        limits = false;
   for (const auto& m : scene.materials) {
-    if (m.model == Model::rigid) continue;
-    chosen.push_back(fmt::format("material '{}': {}", m.name, model_name(m.model)));
+    if (m.law->rigid) continue;
+    chosen.push_back(fmt::format("material '{}': {}", m.name, m.law->name));
     pore = pore || m.pore_pressure != PorePressure::total;
     undrained = undrained || m.pore_pressure == PorePressure::undrained;
     softening = softening || m.softening.active;

@@ -210,7 +210,7 @@ void generate_particles(const CaseNode& root, const std::vector<Material>& mater
     if (material == names.size())
       node.fail("material", fmt::format("'{}' is not one of the materials ({}).{}", name, joined(names),
                                         did_you_mean(name, names)));
-    if (materials[material].model == Model::rigid) node.fail("material", "particles cannot be of a rigid material");
+    if (materials[material].law->rigid) node.fail("material", "particles cannot be of a rigid material");
     fill(read_filling(node, scene.dimension, scene.cell_size, scene.origin), scene.dimension,
          static_cast<int>(material), materials[material].density, scene.gravity, set, scene.velocity_gradient);
   }

@@ -156,7 +156,7 @@ void drop_rigid(Scene& scene) {
   ParticleSet& set = scene.particles;
   std::vector<std::size_t> rows;
   for (std::size_t p = 0; p < set.count(); ++p)
-    if (scene.materials[static_cast<std::size_t>(set.material_id[p])].model != Model::rigid) rows.push_back(p);
+    if (!scene.materials[static_cast<std::size_t>(set.material_id[p])].law->rigid) rows.push_back(p);
   const std::size_t n = set.count();
   if (rows.size() == n) return;
   scene.remarks.push_back(
@@ -197,7 +197,7 @@ std::vector<Material> order_materials(const CaseFile& file, const std::vector<Ma
             file.path().string(), name, joined(names), did_you_mean(name, names)));
       ordered.push_back({});
       ordered.back().name = name;
-      ordered.back().model = Model::rigid;
+      ordered.back().law = &law_named("rigid");
       continue;
     }
     ordered.push_back(given[static_cast<std::size_t>(it - names.begin())]);
@@ -233,7 +233,7 @@ double read_cell_size(const CaseNode& root, const std::string& size) {
 double default_surface_share(const Scene& scene) {
   if (scene.solver.fields.several()) return 0.0;
   for (const std::int32_t id : scene.particles.material_id)
-    if (scene.materials[static_cast<std::size_t>(id)].model != Model::linear_elastic) return 0.0;
+    if (!scene.materials[static_cast<std::size_t>(id)].law->keeps_surface) return 0.0;
   return 0.05;
 }
 

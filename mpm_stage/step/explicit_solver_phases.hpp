@@ -176,7 +176,7 @@ StressWork ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses_of(std::
       const std::size_t end = std::min(run.end, begin + few_particles);
       if (k.averaged) {
         gather_volumetric<Dim, Shape>(P_, begin, end, corner(b), h1_, relaxation(run.material, dt), mean, trace, shift);
-        if (k.model == Model::tresca) relax_by_used_strength(k, P_, begin, end, shift);
+        if (k.phi_zero) relax_by_used_strength(k, P_, begin, end, shift);
       } else {
         own_volumetric(P_, begin, end, trace, shift);
       }

@@ -60,9 +60,9 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::sort() {
   for (std::size_t m = 0; m < constants_.size(); ++m) {
     if (density[m] > 1e299) continue;
     wave_speed_[m] = std::sqrt(constants_[m].wave_modulus() / density[m]);
-    if (constants_[m].model == Model::newtonian_fluid && constants_[m].consistency > 0.0)
-      viscous_limit_ =
-          std::min(viscous_limit_, options_.courant * h_ * h_ * density[m] / (2.0 * Dim * constants_[m].consistency));
+    if (constants_[m].explicit_viscosity > 0.0)
+      viscous_limit_ = std::min(
+          viscous_limit_, options_.courant * h_ * h_ * density[m] / (2.0 * Dim * constants_[m].explicit_viscosity));
   }
   add_time(seconds_.sort, since);
 }

@@ -27,7 +27,7 @@ double bytes_per_step(const BlockOptions& o) {
   const bool affine = o.solver.transfer != mpm::TransferName::flip;
   const int affine_columns = affine ? 4 : 0, pore = o.pore_pressure != mpm::PorePressure::total ? 1 : 0;
   const bool averaging = o.averaged && o.solver.volumetric_average;
-  const int strength = o.model == mpm::Model::mohr_coulomb || o.model == mpm::Model::tresca ? 1 : 0;
+  const int strength = o.law == "mohr_coulomb" || o.law == "tresca" ? 1 : 0;
   // G2P: position, velocity, affine and gradient written, mass read.
   int columns = 2 * 2 + 2 * 2 + 2 * affine_columns + 2 * 4 + 1;
   // Average, in the same pass: volume and three stresses read besides what G2P has just had.
@@ -48,7 +48,7 @@ double flops_per_step(const BlockOptions& o) {
   const double gather = 3 * 2 * (12 + 4) + 2 * 12 + (flip ? 9 * 2 * 2 + 3 * 2 * 2 + 8 : 0) + 34;
   // Factors of 3 rows and 3 columns; 9 nodes x 3 values (m, px, py) x 2 products, or 4 values (px, py, fx, fy) and m.
   const double scatter = 14 + (flip ? 8 * 5 : 4 * 8) + 15 + (flip ? 9 * 4 * 4 + 9 * 2 : 9 * 3 * 4);
-  const double stress = o.model == mpm::Model::mohr_coulomb ? 150 : o.model == mpm::Model::tresca ? 125 : 50;
+  const double stress = o.law == "mohr_coulomb" ? 150 : o.law == "tresca" ? 125 : 50;
   const double average = 2 * 10 + 10 + 4 * (3 * 2 + 2) + 4 * 2 * 2 + 6;
   return 2 * weights + gather + scatter + stress + (o.averaged && o.solver.volumetric_average ? average : 0.0);
 }
@@ -104,20 +104,21 @@ void add(const std::string& name, const BlockOptions& options, long particles, i
 }
 
 void add_main_table(int most_threads) {
-  const std::pair<const char*, mpm::Model> models[] = {{"mohr_coulomb", mpm::Model::mohr_coulomb},
-                                                       {"tresca", mpm::Model::tresca},
-                                                       {"newtonian", mpm::Model::newtonian_fluid},
-                                                       {"linear_elastic", mpm::Model::linear_elastic}};
+  // Name in the results, and of the law.
+  const std::pair<const char*, const char*> models[] = {{"mohr_coulomb", "mohr_coulomb"},
+                                                        {"tresca", "tresca"},
+                                                        {"newtonian", "newtonian_fluid"},
+                                                        {"linear_elastic", "linear_elastic"}};
   const std::pair<const char*, mpm::TransferName> transfers[] = {{"apic", mpm::TransferName::apic},
                                                                  {"aflip", mpm::TransferName::aflip}};
-  for (const auto& [model_name, model] : models)
+  for (const auto& [model_name, law] : models)
     for (const auto& [transfer_name, transfer] : transfers)
       for (const long particles : {50'000L, 200'000L, 1'000'000L})
         for (int threads = 1; threads <= most_threads; ++threads) {
           BlockOptions o;
-          o.model = model;
+          o.law = law;
           o.solver.transfer = transfer;
-          o.averaged = model != mpm::Model::linear_elastic;
+          o.averaged = o.law != "linear_elastic";
           add(fmt::format("step/{}/{}", model_name, transfer_name), o, particles, threads);
         }
 }

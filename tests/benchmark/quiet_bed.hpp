@@ -40,7 +40,7 @@ inline QuietBedOutcome run_quiet_bed(const mpm::SleepOptions& sleep) {
 
   mpm::Material sand;
   sand.name = "sand";
-  sand.model = mpm::Model::mohr_coulomb;
+  sand.law = &mpm::law_named("mohr_coulomb");
   sand.youngs_modulus = 2e6;
   sand.poisson_ratio = 0.3;
   sand.friction_angle = 30.0;

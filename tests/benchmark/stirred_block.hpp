@@ -13,7 +13,7 @@
 namespace tailrun::bench {
 
 struct BlockOptions {
-  mpm::Model model = mpm::Model::mohr_coulomb;
+  std::string law = "mohr_coulomb";
   mpm::SolverOptions solver;
   mpm::PorePressure pore_pressure = mpm::PorePressure::total;
   bool averaged = true;  // volumetric strain, of this material
@@ -52,14 +52,14 @@ class StirredBlock {
       terrain_.add_line({{{-10.0, 0.0}}, {{0.5 * length, 0.0}}, {{length + 10.0, -0.1 * length}}}, {0.35, 0.35}, false);
     mpm::Material soil;
     soil.name = "soil";
-    soil.model = options.model;
+    soil.law = &mpm::law_named(options.law);
     soil.youngs_modulus = 1e7;
     soil.poisson_ratio = 0.3;
     soil.friction_angle = 30.0;
     soil.cohesion = 5e3;
     soil.bulk_modulus = 1e7;
     soil.density = 2000.0;
-    soil.rate.consistency = options.model == mpm::Model::newtonian_fluid ? 10.0 : 0.0;
+    soil.rate.consistency = options.law == "newtonian_fluid" ? 10.0 : 0.0;
     soil.pore_pressure = options.pore_pressure;
     soil.average_volumetric_strain = options.averaged;
     solver_ = mpm::make_solver<2>(options.solver, cell, {}, std::move(P), {soil}, terrain_, mpm::Walls<2>{});

@@ -14,7 +14,7 @@ Scene row_of_particles() {
   Scene scene;
   Material soil;
   soil.name = "soil";
-  soil.model = Model::tresca;
+  soil.law = &law_named("tresca");
   scene.materials = {soil};
   scene.particles.material_names = {"soil"};
   for (int i = 0; i <= 10; ++i) {

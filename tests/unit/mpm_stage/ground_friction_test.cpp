@@ -38,7 +38,7 @@ Slide slide_of_block(double angle, double friction) {
   }
   Material rock;
   rock.name = "rock";
-  rock.model = Model::linear_elastic;
+  rock.law = &law_named("linear_elastic");
   rock.youngs_modulus = 1e9;
   rock.poisson_ratio = 0.3;
   Terrain plane;
@@ -115,7 +115,7 @@ double braking_of_slab(bool limited) {
   }
   Material clay;
   clay.name = "clay";
-  clay.model = Model::tresca;
+  clay.law = &law_named("tresca");
   clay.youngs_modulus = 5e6;
   clay.poisson_ratio = 0.33;
   Terrain ground;

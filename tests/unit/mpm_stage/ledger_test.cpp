@@ -41,7 +41,7 @@ Particles<Dim> block(std::array<int, 3> count) {
 Material elastic(double youngs_modulus) {
   Material m;
   m.name = "rubber";
-  m.model = Model::linear_elastic;
+  m.law = &law_named("linear_elastic");
   m.youngs_modulus = youngs_modulus;
   m.poisson_ratio = 0.3;
   return m;

@@ -17,7 +17,7 @@ constexpr double h = 0.25, spacing = 0.125;
 Material rubber() {
   Material m;
   m.name = "rubber";
-  m.model = Model::linear_elastic;
+  m.law = &law_named("linear_elastic");
   m.youngs_modulus = 1e6;
   m.poisson_ratio = 0.3;
   return m;

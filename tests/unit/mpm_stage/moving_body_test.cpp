@@ -32,7 +32,7 @@ struct Column {
       particles.identity[p] = static_cast<std::int32_t>(p);
     }
     soil.name = "soil";
-    soil.model = Model::linear_elastic;
+    soil.law = &law_named("linear_elastic");
     soil.youngs_modulus = 1e6;
     soil.poisson_ratio = 0.25;
   }

@@ -39,7 +39,7 @@ struct Outcome {
 Outcome run(const SleepOptions& sleep) {
   Material m;
   m.name = "rubber";
-  m.model = Model::linear_elastic;
+  m.law = &law_named("linear_elastic");
   m.youngs_modulus = 1e5;
   m.poisson_ratio = 0.0;
   SolverOptions o;
@@ -122,7 +122,7 @@ namespace {
 Material elastic(const char* name, double youngs_modulus) {
   Material m;
   m.name = name;
-  m.model = Model::linear_elastic;
+  m.law = &law_named("linear_elastic");
   m.youngs_modulus = youngs_modulus;
   m.poisson_ratio = 0.0;
   return m;

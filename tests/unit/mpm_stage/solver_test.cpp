@@ -10,10 +10,10 @@ using namespace tailrun::mpm;
 
 namespace {
 
-Material soil(Model model) {
+Material soil(const char* law) {
   Material m;
   m.name = "soil";
-  m.model = model;
+  m.law = &law_named(law);
   m.youngs_modulus = 1e6;
   m.poisson_ratio = 0.3;
   m.friction_angle = 30.0;
@@ -63,9 +63,9 @@ std::vector<double> momenta(const Particles<Dim>& P, double h) {
 }
 
 template <int Dim>
-std::unique_ptr<Solver<Dim>> solver(const SolverOptions& o, double h, Particles<Dim> P, Model model,
+std::unique_ptr<Solver<Dim>> solver(const SolverOptions& o, double h, Particles<Dim> P, const char* law,
                                     const Terrain& terrain) {
-  return make_solver<Dim>(o, h, {}, std::move(P), {soil(model)}, terrain, Walls<Dim>{});
+  return make_solver<Dim>(o, h, {}, std::move(P), {soil(law)}, terrain, Walls<Dim>{});
 }
 
 // Particles from a file have velocities but no spin, and take it from the first grid; a step later nothing is lost.
@@ -79,7 +79,7 @@ void check_momenta_of_free_body(TransferName transfer, std::array<int, 3> count,
   o.transfer = transfer;
   Particles<Dim> P = block<Dim>(0.125, count, true);
   if (with_spin) P.affine[1] = P.velocity[0];  // 1/s, any numbers
-  auto s = solver<Dim>(o, 0.25, std::move(P), Model::linear_elastic, none);
+  auto s = solver<Dim>(o, 0.25, std::move(P), "linear_elastic", none);
   s->start(1e30);
   if (!with_spin) s->step({}, {}, 1e30);
   const auto before = momenta<Dim>(s->particles(), 0.25);
@@ -113,7 +113,7 @@ TEST_CASE("uniform motion stays uniform and free of stress, over many cells") {
       for (auto& s : P.stress) s[p] = 0.0;
     }
     const double x0 = P.position[0][100];
-    auto s = solver<2>(o, 0.25, std::move(P), Model::linear_elastic, none);
+    auto s = solver<2>(o, 0.25, std::move(P), "linear_elastic", none);
     s->start(1e30);
     double time = 0.0;
     for (int i = 0; i < 400; ++i) time += s->step({0, 0}, {0, 0}, 1e30).dt;
@@ -134,7 +134,7 @@ TEST_CASE("the same bits for one thread and for two") {
   std::array<std::vector<double>, 2> x;
   for (int t = 0; t < 2; ++t) {
     omp_set_num_threads(t + 1);
-    auto s = solver<2>({}, 0.25, block<2>(0.125, {40, 30, 1}, true), Model::mohr_coulomb, bed);
+    auto s = solver<2>({}, 0.25, block<2>(0.125, {40, 30, 1}, true), "mohr_coulomb", bed);
     s->start(1e30);
     for (int i = 0; i < 150; ++i) s->step({0, -9.81}, {0, 0}, 1e30);
     x[t].assign(s->particles().position[0].begin(), s->particles().position[0].end());
@@ -145,7 +145,7 @@ TEST_CASE("the same bits for one thread and for two") {
 
 TEST_CASE("3-D: a free body keeps its momentum, gravity adds to it exactly") {
   const Terrain none;
-  auto s = solver<3>({}, 0.25, block<3>(0.125, {8, 8, 8}, true), Model::linear_elastic, none);
+  auto s = solver<3>({}, 0.25, block<3>(0.125, {8, 8, 8}, true), "linear_elastic", none);
   s->start(1e30);
   const auto sum = [&](int d) {
     double m = 0.0;
@@ -166,7 +166,7 @@ TEST_CASE("FLIP keeps linear momentum") {
   const Terrain none;
   SolverOptions o;
   o.transfer = TransferName::flip;
-  auto s = solver<2>(o, 0.25, block<2>(0.125, {16, 16, 1}, false), Model::linear_elastic, none);
+  auto s = solver<2>(o, 0.25, block<2>(0.125, {16, 16, 1}, false), "linear_elastic", none);
   s->start(1e30);
   const auto before = momenta<2>(s->particles(), 0.25);
   for (int i = 0; i < 100; ++i) s->step({0, 0}, {0, 0}, 1e30);
@@ -189,7 +189,7 @@ TEST_CASE("shorter steps take more of a motion with APIC, but not with AFLIP") {
       for (auto& column : P.stress) column[p] = 0.0;
       start += P.velocity[1][p] * P.velocity[1][p];
     }
-    auto s = solver<2>(o, 0.25, std::move(P), Model::linear_elastic, none);
+    auto s = solver<2>(o, 0.25, std::move(P), "linear_elastic", none);
     s->start(1e30);
     const auto energy = [&] {
       double sum = s->elastic_energy() / (0.5 * 2000.0 * 0.125 * 0.125);
@@ -215,7 +215,7 @@ TEST_CASE("particles are held at the domain's sides, stopped or removed, as aske
     walls.leaving = leaving;
     Particles<2> P = block<2>(0.125, {16, 16, 1}, true);
     for (double& v : P.velocity[0]) v = 5.0;
-    auto s = make_solver<2>({}, 0.25, {-1.0, -1.0}, std::move(P), {soil(Model::linear_elastic)}, none, walls);
+    auto s = make_solver<2>({}, 0.25, {-1.0, -1.0}, std::move(P), {soil("linear_elastic")}, none, walls);
     s->start(1e30);
     for (int i = 0; i < 100; ++i) s->step({0, 0}, {0, 0}, 1e30);
     return s;
@@ -236,7 +236,7 @@ TEST_CASE("a time step beyond the limit is caught with the particle's name, not 
   bed.add_line({{{-10.0, 0.0}}, {{10.0, 0.0}}}, {0.4}, false);
   SolverOptions o;
   o.courant = 40.0;
-  auto s = solver<2>(o, 0.25, block<2>(0.125, {16, 16, 1}, true), Model::linear_elastic, bed);
+  auto s = solver<2>(o, 0.25, block<2>(0.125, {16, 16, 1}, true), "linear_elastic", bed);
   s->start(1e30);
   CHECK_THROWS_WITH_AS(
       [&] {

@@ -20,9 +20,9 @@ Particles<2> one_particle(std::array<double, 4> stress) {
   return P;
 }
 
-MaterialConstants elastic(Model model = Model::linear_elastic) {
+MaterialConstants elastic(const char* law = "linear_elastic") {
   Material m;
-  m.model = model;
+  m.law = &law_named(law);
   m.youngs_modulus = 1e7;
   m.poisson_ratio = 0.3;
   m.friction_angle = 30.0;
@@ -32,7 +32,7 @@ MaterialConstants elastic(Model model = Model::linear_elastic) {
 // Cohesionless where the particle's strength is zero.
 MaterialConstants sand(PorePressure pore_pressure) {
   Material m;
-  m.model = Model::mohr_coulomb;
+  m.law = &law_named("mohr_coulomb");
   m.youngs_modulus = 5e7;
   m.poisson_ratio = 0.3;
   m.friction_angle = 34.0;
@@ -75,7 +75,7 @@ TEST_CASE("uniaxial strain gives Hooke's stresses and the exact volume") {
 TEST_CASE("plane strain active yield: zz is the intermediate stress and Rankine's ratio holds") {
   Particles<2> P = one_particle({-5e4, -1e5, -5e4, 0});
   P.strength[0] = 0.0;
-  for (int i = 0; i < 150; ++i) update(elastic(Model::mohr_coulomb), P, {2e-5, 0.0, 0.0, 0.0}, 1e-3);
+  for (int i = 0; i < 150; ++i) update(elastic("mohr_coulomb"), P, {2e-5, 0.0, 0.0, 0.0}, 1e-3);
   CHECK(P.stress[1][0] < -5e4);
   const double ka = (1.0 - 0.5) / (1.0 + 0.5);
   CHECK(P.stress[0][0] / P.stress[1][0] == doctest::Approx(ka).epsilon(1e-9));
@@ -85,7 +85,7 @@ TEST_CASE("plane strain active yield: zz is the intermediate stress and Rankine'
 
 TEST_CASE("Bingham: shear stress is yield stress plus viscosity times rate") {
   Material m;
-  m.model = Model::tresca;
+  m.law = &law_named("tresca");
   m.youngs_modulus = 1e8;
   m.poisson_ratio = 0.3;
   m.rate.consistency = 50.0;
@@ -100,7 +100,7 @@ TEST_CASE("Bingham: shear stress is yield stress plus viscosity times rate") {
 
 TEST_CASE("softening: strength falls to its residual over the strain given") {
   Material m;
-  m.model = Model::tresca;
+  m.law = &law_named("tresca");
   m.youngs_modulus = 1e8;
   m.poisson_ratio = 0.3;
   m.softening.active = true;

@@ -40,7 +40,7 @@ double energy_left(double surface_share) {
   }
   Material beam;
   beam.name = "beam";
-  beam.model = Model::linear_elastic;
+  beam.law = &law_named("linear_elastic");
   beam.youngs_modulus = 2e6;
   beam.poisson_ratio = 0.0;
   SolverOptions o;

@@ -105,7 +105,7 @@ TEST_CASE("mean stress relaxes by the share of its strength that the soil uses, 
 TEST_CASE("a strong block under its weight gains no energy from the relaxation of its mean stress") {
   Material clay;
   clay.name = "clay";
-  clay.model = Model::tresca;
+  clay.law = &law_named("tresca");
   clay.youngs_modulus = 5e6;
   clay.poisson_ratio = 0.33;
   Particles<2> P;

@@ -14,7 +14,7 @@ PAGES = {
                     "fem_stage/element_test/calibration.cpp"],
     "docs/mpm.md": ["mpm_stage/scene/scene_reader.cpp", "mpm_stage/scene/material_reader.cpp",
                     "mpm_stage/scene/terrain_reader.cpp", "mpm_stage/scene/particle_generator.cpp",
-                    "mpm_stage/scene/body_reader.cpp"],
+                    "mpm_stage/scene/body_reader.cpp", "mpm_stage/scene/contact_reader.cpp", "mpm_stage/material/*.cpp"],
 }
 READERS = ("number|number_or|number_if|integer|integer_or|boolean_or|text|text_or|texts_or|choice|choice_or|numbers|numbers_or|"
            "table|file|object|object_if|object_or_empty|list|list_or_empty")

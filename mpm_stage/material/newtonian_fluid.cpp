@@ -1,0 +1,98 @@
+// newtonian_fluid: weakly compressible Newtonian fluid.
+//
+//   p = K (rho / rho_0 - 1), s = -p I + 2 eta dev(D)
+//
+// Linear in the density; Monaghan's (1994) exponent of 7 makes no difference at the small compression that is meant. K
+// need not be the fluid's own: with waves ten times as fast as the flow, density varies by about one per cent. Pressure
+// under zero is let go (allow_tension false): a fluid with a free surface comes apart.
+//
+// Viscous stress is explicit, so viscosity limits the time step (explicit_viscosity). Mean stress relaxes, as the fluid
+// has no strength that depends on it; there the volume follows the pressure.
+#include <algorithm>
+
+#include "common/case_file.hpp"
+#include "mpm_stage/material/elastic_energy.hpp"
+#include "mpm_stage/material/plane_strain.hpp"
+#include "mpm_stage/material/three_dimensions.hpp"
+
+namespace tailrun::mpm {
+
+namespace {
+
+struct Own {
+  bool allow_tension;
+};
+
+void read(const CaseNode& node, Material& m) {
+  // Cure of volumetric locking.
+  m.average_volumetric_strain = node.boolean_or("average_volumetric_strain", true);
+  // rho_0, at no pressure.
+  m.density = node.number("density", "kg/m3", Range::positive());
+  // K.
+  m.bulk_modulus = node.number("bulk_modulus", "Pa", Range::positive());
+  // eta, dynamic.
+  m.rate.consistency = node.number_or("viscosity", "Pa s", Range::non_negative(), 0.0);
+  // Whether pressure may fall under zero, down to -K.
+  m.own.set(Own{node.boolean_or("allow_tension", false)});
+}
+
+double lowest_pressure(const MaterialConstants& k) {
+  return k.own.get<Own>().allow_tension ? -k.bulk : 0.0;
+}
+
+double update_plane(const MaterialConstants& k, Particles<2>& P, std::size_t begin, std::size_t end,
+                    const double* trace, const double* shift, double dt) {
+  const PlaneColumns c(P, trace, shift, begin);
+  Vec4 dissipated = {};
+  const double viscous = dt > 0.0 ? 2.0 * k.explicit_viscosity / dt : 0.0, flexibility = 1.0 / k.bulk;
+  const Vec4 low = splat(lowest_pressure(k));
+  for_each_group(
+      0, end - begin, [&](const auto& g) __attribute__((always_inline)) {
+        const Vec4 t = g.read(c.trace) + g.read(c.shift) * flexibility;
+        const Vec4 growth = (1.0 + 0.25 * t) / (1.0 - 0.25 * t), volume = g.read(c.volume) * (growth * growth);
+        const Vec4 pressure = larger(low, k.bulk * (g.read(c.mass) / (volume * k.reference_density) - 1.0));
+        const Vec4 gxx = g.read(c.gxx), gyy = g.read(c.gyy), third = (gxx + gyy) * (1.0 / 3.0);
+        const Vec4 exx = gxx - third, eyy = gyy - third, exy = 0.5 * (g.read(c.gxy) + g.read(c.gyx));
+        g.write(c.volume, volume);
+        g.write(c.sxx, viscous * exx - pressure);
+        g.write(c.syy, viscous * eyy - pressure);
+        g.write(c.szz, -(viscous * third) - pressure);
+        g.write(c.sxy, viscous * exy);
+        dissipated += g.only(viscous * (exx * exx + eyy * eyy + third * third + 2.0 * exy * exy) * volume);
+      });
+  return sum_of_lanes(dissipated);
+}
+
+double update_solid(const MaterialConstants& k, Particles<3>& P, std::size_t begin, std::size_t end,
+                    const double* trace, const double* shift, double dt) {
+  double dissipated = 0.0;
+  const double low = lowest_pressure(k);
+  for (std::size_t p = begin; p < end; ++p) {
+    const double t = trace[p - begin];
+    const Matrix3 e = deviator_of(gradient_matrix(P, p));
+    P.volume[p] *= volume_ratio(t + shift[p - begin] / k.bulk);
+    const double pressure = std::max(low, k.bulk * (P.mass[p] / (P.volume[p] * k.reference_density) - 1.0));
+    const double viscous = dt > 0.0 ? 2.0 * k.explicit_viscosity / dt : 0.0;
+    store(P, p, viscous * e - pressure * Matrix3::Identity());
+    dissipated += viscous * e.squaredNorm() * P.volume[p];
+  }
+  return dissipated;
+}
+
+void set_constants(const Material& m, double /*cell_size*/, MaterialConstants& k) {
+  k.bulk = m.bulk_modulus;
+  k.explicit_viscosity = m.rate.consistency;
+  k.own = m.own;
+  k.relaxed = true;
+  k.plane = {update_plane, isotropic_energy};
+  k.solid = {update_solid, isotropic_energy};
+}
+
+}  // namespace
+
+namespace laws {
+extern const MaterialLaw newtonian_fluid = {
+    .name = "newtonian_fluid", .flows = true, .read = read, .set_constants = set_constants};
+}
+
+}  // namespace tailrun::mpm
