@@ -33,7 +33,6 @@ MaterialConstants constants_of(const Material& material, double cell_size) {
   k.exponent = material.rate.exponent;
   k.allow_tension = material.allow_tension;
   k.averaged = material.average_volumetric_strain;
-  k.relaxed = material.model == Model::tresca || material.model == Model::newtonian_fluid;
   k.pore_pressure = material.pore_pressure;
   k.pore_stiffness = material.pore_stiffness;
   return k;

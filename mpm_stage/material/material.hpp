@@ -66,9 +66,6 @@ struct MaterialConstants {
   double cohesion_ratio = 1.0;
   double consistency = 0.0, exponent = 1.0;
   bool allow_tension = false, averaged = true;
-  // Mean stress relaxes only where strength does not depend on it: frictional soil would be pushed over its yield
-  // surface again and again, and each return would compact it a little.
-  bool relaxed = true;
   PorePressure pore_pressure = PorePressure::total;
   double pore_stiffness = 0.0;
   // m3/kg, of Mohr-Coulomb and Tresca soil. Soil that comes apart carries no stress but would go on counting the

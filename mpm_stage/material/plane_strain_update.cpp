@@ -18,9 +18,9 @@ struct Columns {
   double* __restrict gxx, * __restrict gxy, * __restrict gyx, * __restrict gyy;
   double* __restrict sxx, * __restrict syy, * __restrict szz, * __restrict sxy;
   double* __restrict volume, * __restrict strain, * __restrict strength, * __restrict mass;
-  const double* __restrict trace, * __restrict shift;
+  const double* __restrict trace;
 
-  Columns(Particles<2>& P, const double* trace_of_run, const double* shift_of_run, std::size_t begin)
+  Columns(Particles<2>& P, const double* trace_of_run, std::size_t begin)
       : gxx(P.gradient[0].data() + begin),
         gxy(P.gradient[1].data() + begin),
         gyx(P.gradient[2].data() + begin),
@@ -33,8 +33,7 @@ struct Columns {
         strain(P.plastic_strain.data() + begin),
         strength(P.strength.data() + begin),
         mass(P.mass.data() + begin),
-        trace(trace_of_run),
-        shift(shift_of_run) {}
+        trace(trace_of_run) {}
 };
 
 // Mean and deviator of the in-plane trial stress: sxx = p + q, syy = p - q, sxy = r. `volume_ratio` is det F of the
@@ -47,7 +46,7 @@ template <class G>
 [[gnu::always_inline]] inline PlaneTrial elastic_trial(const MaterialConstants& k, const Columns& c, const G& g) {
   const Vec4 gxx = g.read(c.gxx), gxy = g.read(c.gxy), gyx = g.read(c.gyx), gyy = g.read(c.gyy);
   const Vec4 sxx = g.read(c.sxx), syy = g.read(c.syy), sxy = g.read(c.sxy);
-  const Vec4 trace = g.read(c.trace), shift = g.read(c.shift);
+  const Vec4 trace = g.read(c.trace);
   // Hughes & Winget: Q = (I - W/2)^-1 (I + W/2) turns by theta with tan(theta / 2) = w / 2; the deviator turns by 2
   // theta. One division serves the rotation and the change of volume.
   const Vec4 t = 0.25 * (gyx - gxy), tt = t * t, shrunk = 1.0 - 0.25 * trace;
@@ -58,10 +57,10 @@ template <class G>
   const Vec4 de = 0.5 * (gxx - gyy), dg = 0.5 * (gxy + gyx);
   const Vec4 growth = (1.0 + 0.25 * trace) * (both * (1.0 + tt));
   PlaneTrial o;
-  o.p = p0 + (k.lambda + k.mu) * trace + shift;
+  o.p = p0 + (k.lambda + k.mu) * trace;
   o.q = q0 * c2 - sxy * s2 + 2.0 * k.mu * de;
   o.r = q0 * s2 + sxy * c2 + 2.0 * k.mu * dg;
-  o.zz = g.read(c.szz) + k.lambda * trace + shift;
+  o.zz = g.read(c.szz) + k.lambda * trace;
   o.shear_rate_squared = 4.0 * (de * de + dg * dg);
   o.volume_ratio = growth * growth;
   return o;
@@ -178,11 +177,11 @@ double choose_strength_law(const MaterialConstants& k, const Columns& c, std::si
 // Weakly compressible Newtonian fluid: p = K (rho / rho_0 - 1), s = -p I + 2 eta dev(D).
 double newtonian_fluid(const MaterialConstants& k, const Columns& c, std::size_t n, double dt) {
   Vec4 dissipated = {};
-  const double viscous = dt > 0.0 ? 2.0 * k.consistency / dt : 0.0, flexibility = 1.0 / k.bulk;
+  const double viscous = dt > 0.0 ? 2.0 * k.consistency / dt : 0.0;
   const Vec4 low = splat(k.allow_tension ? -k.bulk : 0.0);
   for_each_group(
       0, n, [&](const auto& g) __attribute__((always_inline)) {
-        const Vec4 t = g.read(c.trace) + g.read(c.shift) * flexibility;
+        const Vec4 t = g.read(c.trace);
         const Vec4 growth = (1.0 + 0.25 * t) / (1.0 - 0.25 * t), volume = g.read(c.volume) * (growth * growth);
         const Vec4 pressure = larger(low, k.bulk * (g.read(c.mass) / (volume * k.reference_density) - 1.0));
         const Vec4 gxx = g.read(c.gxx), gyy = g.read(c.gyy), third = (gxx + gyy) * (1.0 / 3.0);
@@ -218,11 +217,11 @@ double update_skeleton(const MaterialConstants& k, const Columns& c, std::size_t
 }  // namespace
 
 StressWork update_stress(const MaterialConstants& k, Particles<2>& P, std::size_t begin, std::size_t end,
-                         const double* trace, const double* shift, double dt) {
+                         const double* trace, double dt) {
   if (k.pore_pressure == PorePressure::undrained)
     for (std::size_t p = begin; p < end; ++p) P.pore_pressure[p] -= k.pore_stiffness * trace[p - begin];
-  FrozenPorePressure<2> water(k, P, begin, end, trace, shift);
-  const double dissipated = update_skeleton(k, Columns(P, trace, shift, begin), end - begin, dt);
+  FrozenPorePressure<2> water(k, P, begin, end, trace);
+  const double dissipated = update_skeleton(k, Columns(P, trace, begin), end - begin, dt);
   return {dissipated, water.release()};
 }
 

@@ -78,14 +78,14 @@ double return_to_yield(const MaterialConstants& k, double strength, double rate,
 }  // namespace
 
 StressWork update_stress(const MaterialConstants& k, Particles<3>& P, std::size_t begin, std::size_t end,
-                         const double* trace, const double* shift, double dt) {
+                         const double* trace, double dt) {
   double dissipated = 0.0;
-  FrozenPorePressure<3> water(k, P, begin, end, trace, shift);
+  FrozenPorePressure<3> water(k, P, begin, end, trace);
   for (std::size_t p = begin; p < end; ++p) {
     const double t = trace[p - begin];
     const Matrix G = gradient_matrix(P, p), D = 0.5 * (G + G.transpose());
     const Matrix e = D - D.trace() / 3.0 * Matrix::Identity();
-    P.volume[p] *= volume_ratio(k.model == Model::newtonian_fluid ? t + shift[p - begin] / k.bulk : t);
+    P.volume[p] *= volume_ratio(t);
     if (k.pore_pressure == PorePressure::undrained) P.pore_pressure[p] -= k.pore_stiffness * t;
     if (k.model == Model::newtonian_fluid) {
       const double low = k.allow_tension ? -k.bulk : 0.0;
@@ -96,7 +96,7 @@ StressWork update_stress(const MaterialConstants& k, Particles<3>& P, std::size_
       continue;
     }
     if (k.model == Model::rigid) throw ComputationError("a rigid material has no stress update");
-    Matrix s = rotated(stress_matrix(P, p), G) + 2.0 * k.mu * e + (k.bulk * t + shift[p - begin]) * Matrix::Identity();
+    Matrix s = rotated(stress_matrix(P, p), G) + 2.0 * k.mu * e + k.bulk * t * Matrix::Identity();
     if (k.model != Model::linear_elastic) {
       P.volume[p] = std::min(P.volume[p], k.largest_specific_volume * P.mass[p]);
       dissipated += P.volume[p] * return_to_yield(k, P.strength[p], dt > 0.0 ? std::sqrt(2.0) * e.norm() / dt : 0.0, s,

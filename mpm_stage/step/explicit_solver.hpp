@@ -24,7 +24,6 @@
 #include "mpm_stage/boundary/mirror_walls.hpp"
 #include "mpm_stage/boundary/surface_extension.hpp"
 #include "mpm_stage/grid/tiles.hpp"
-#include "mpm_stage/material/mean_stress_relaxation.hpp"
 #include "mpm_stage/material/stress_update.hpp"
 #include "mpm_stage/step/grid_update.hpp"
 #include "mpm_stage/step/sleeping_blocks.hpp"
@@ -32,7 +31,7 @@
 #include "mpm_stage/transfer/grid_to_particles.hpp"
 #include "mpm_stage/transfer/mass_matrix.hpp"
 #include "mpm_stage/transfer/particles_to_grid.hpp"
-#include "mpm_stage/transfer/volumetric_average.hpp"
+#include "mpm_stage/transfer/volumetric_projection.hpp"
 
 namespace tailrun::mpm {
 
@@ -102,7 +101,6 @@ class ExplicitSolver final : public Solver<Dim> {
     StepReport report;
     const double dt = next_dt_;
     report.dt = dt;
-    for (int d = 0; d < Dim; ++d) body_[d] = body[d] + inertial[d];
     if (sleep_.active() && std::any_of(inertial.begin(), inertial.end(), [](double a) { return a != 0.0; }))
       sleep_.wake_all();
     update_grid(dt, body, inertial);
@@ -150,7 +148,7 @@ class ExplicitSolver final : public Solver<Dim> {
   std::size_t grid_bytes() const override {
     return grid_.bytes() + (tiles_.capacity() + velocity_.capacity() + change_.capacity()) * sizeof(Vec4) +
            beside_.capacity() * sizeof(SplitNode<Dim>) + (term_.capacity() + products_.capacity()) * sizeof(Vec4) +
-           averaged_tiles_.capacity() * sizeof(AveragedNode) + averaged_.capacity() * sizeof(NodeMean);
+           averaged_tiles_.capacity() * sizeof(PatchSum) + averaged_.capacity() * sizeof(PatchFit);
   }
 
  private:
@@ -196,11 +194,6 @@ class ExplicitSolver final : public Solver<Dim> {
     return std::min({options_.courant * h_ / fastest_wave_ / std::sqrt(raised), options_.maximum_step,
                      viscous_limit_ / raised, limit});
   }
-  // Share of the way to the average that the mean stress goes in a step.
-  double relaxation(int material, double dt) const {
-    const auto m = static_cast<std::size_t>(material);
-    return constants_[m].relaxed ? std::min(0.5, options_.mean_stress_relaxation * dt * h1_ * wave_speed_[m]) : 0.0;
-  }
   double flip_share(double dt) const {
     return Transfer == TransferName::aflip ? 1.0 - std::min(1.0, options_.transfer_damping * dt * h1_ * fastest_wave_)
                                            : options_.flip_share;
@@ -239,6 +232,7 @@ class ExplicitSolver final : public Solver<Dim> {
   void scatter_ground_gaps(std::size_t b);
   void rub_ground(double dt, const std::array<double, Dim>& inertial);
   void sum_kinetic_after();
+  void book_damping();
   void move_bodies(double dt);
   std::string description(std::size_t p) const;
   [[noreturn]] void fail(std::size_t begin, std::size_t end, const std::string& what) const;
@@ -257,7 +251,6 @@ class ExplicitSolver final : public Solver<Dim> {
   MirrorWalls<Dim> mirrors_;
   SurfaceExtension<Dim> extension_;
   SleepingBlocks<Dim> sleep_;
-  std::array<double, Dim> body_{};
   bool averaging_ = false, leaving_ = false, starts_with_spin_ = false;
   double kinetic_ = 0.0;     // J, of the particles on the nodes
   double nodes_gain_ = 0.0;  // J, what the nodes' kinetic energy has grown by in this step
@@ -268,8 +261,9 @@ class ExplicitSolver final : public Solver<Dim> {
   AlignedVector<SplitNode<Dim>> beside_;   // the same, only with Split
   AlignedVector<Vec4> velocity_, change_;  // per active block
   AlignedVector<Vec4> sums_, force_sums_;  // per active block, only with mirrors
-  AlignedVector<AveragedNode> averaged_tiles_;
-  AlignedVector<NodeMean> averaged_;
+  AlignedVector<PatchSum> averaged_tiles_;
+  AlignedVector<PatchFit> averaged_;
+  std::vector<std::array<double, Dim>> damped_;  // N s, taken by local damping in this step; per active block
   std::vector<Gap> gap_tiles_;
   std::vector<NodeGrip> grip_;  // per active block
   // FMPM: the latest term of the velocity and the mass matrix times it, per active block; what contact holds.

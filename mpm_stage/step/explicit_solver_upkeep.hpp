@@ -74,6 +74,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
   if (Split) beside_.resize(tiles_.size());
   velocity_.resize(grid_.active() * block_nodes);
   if (separate_change) change_.resize(velocity_.size());
+  if (options_.local_damping > 0.0) damped_.assign(velocity_.size(), {});
   if (needs_all_sums()) {
     sums_.resize(velocity_.size());
     if (Split) force_sums_.resize(velocity_.size());

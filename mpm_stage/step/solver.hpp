@@ -34,11 +34,10 @@ struct SolverOptions {
   double transfer_damping = 0.3;
   int fmpm_order = 4;  // terms of the full mass matrix's inverse (mass_filter.hpp); 1 is PIC
   bool volumetric_average = true;
-  double mean_stress_relaxation = 0.5;  // 1, of the mean stress towards its average, per h / c
-  double courant = 0.5;                 // 1, dt = courant h / max(c + |v|)
-  double maximum_step = 1e30;           // s
-  bool soil_limits_friction = true;     // ground takes no more shear than phi = 0 soil carries (soil_limit.hpp)
-  double contact_reach = 0.5;           // cells: nodes up to this distance above the ground belong to it
+  double courant = 0.5;              // 1, dt = courant h / max(c + |v|)
+  double maximum_step = 1e30;        // s
+  bool soil_limits_friction = true;  // ground takes no more shear than phi = 0 soil carries (soil_limit.hpp)
+  double contact_reach = 0.5;        // cells: nodes up to this distance above the ground belong to it
   // 1, nodes under this share of the heaviest mass beside them are continued (surface_extension.hpp); 0: none. Negative
   // in a scene: not given.
   double surface_share = 0.0;
