@@ -231,7 +231,7 @@ double elastic_energy(const MaterialConstants& k, const Particles<2>& P, std::si
     const double xx = P.stress[0][p], yy = P.stress[1][p], zz = P.stress[2][p], xy = P.stress[3][p];
     const double mean = (xx + yy + zz) / 3.0;
     if (k.model == Model::newtonian_fluid) {
-      energy += 0.5 * mean * mean / k.bulk * P.volume[p];
+      energy += stored_in_fluid(k, P.mass[p], P.volume[p]);
     } else {
       const double dev =
           (xx - mean) * (xx - mean) + (yy - mean) * (yy - mean) + (zz - mean) * (zz - mean) + 2.0 * xy * xy;

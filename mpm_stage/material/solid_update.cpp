@@ -112,8 +112,8 @@ double elastic_energy(const MaterialConstants& k, const Particles<3>& P, std::si
   for (std::size_t p = begin; p < end; ++p) {
     const Matrix s = stress_matrix(P, p);
     const double mean = s.trace() / 3.0;
-    double density = 0.5 * mean * mean / k.bulk;
-    if (k.model != Model::newtonian_fluid) density += 0.25 * (s - mean * Matrix::Identity()).squaredNorm() / k.mu;
+    double density = 0.5 * mean * mean / k.bulk + 0.25 * (s - mean * Matrix::Identity()).squaredNorm() / k.mu;
+    if (k.model == Model::newtonian_fluid) density = stored_in_fluid(k, P.mass[p], P.volume[p]) / P.volume[p];
     if (k.pore_pressure == PorePressure::undrained)
       density += 0.5 * P.pore_pressure[p] * P.pore_pressure[p] / k.pore_stiffness;
     energy += density * P.volume[p];

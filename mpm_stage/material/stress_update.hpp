@@ -2,6 +2,7 @@
 // surface; volume and pore pressure follow.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 
 #include "mpm_stage/material/material.hpp"
@@ -23,8 +24,14 @@ StressWork update_stress(const MaterialConstants& material, Particles<2>& P, std
 StressWork update_stress(const MaterialConstants& material, Particles<3>& P, std::size_t begin, std::size_t end,
                          const double* trace, double dt);
 
-// Recoverable energy of the stresses, J: s : C^-1 : s / 2 (elastic and elasto-plastic solids), K (ln J)^2 / 2 of the
-// fluid, and u^2 / (2 K_f / n) of undrained pore water.
+// Work of the fluid's pressure K (1 / J - 1) on its compression to J of its volume, J: K V_0 (J - 1 - ln J).
+inline double stored_in_fluid(const MaterialConstants& k, double mass, double volume) {
+  const double whole = mass / k.reference_density, J = volume / whole;
+  return J < 1.0 || k.allow_tension ? k.bulk * whole * (J - 1.0 - std::log(J)) : 0.0;
+}
+
+// Recoverable energy of the stresses, J: s : C^-1 : s / 2 (elastic and elasto-plastic solids), that of the fluid, and
+// u^2 / (2 K_f / n) of undrained pore water.
 double elastic_energy(const MaterialConstants& material, const Particles<2>& P, std::size_t begin, std::size_t end);
 double elastic_energy(const MaterialConstants& material, const Particles<3>& P, std::size_t begin, std::size_t end);
 
