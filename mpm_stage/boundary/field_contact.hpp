@@ -8,17 +8,17 @@
 // Bodies i and j at a node, with velocities after forces and body acceleration and n from the centre of i to that of j:
 // the approach (v_i - v_j) . n is stopped, their sliding is braked by at most
 //   dt A min(s_i, s_j) + mu J,
-// where A is the part of the surface that is the node's (the larger of the two bodies' G . n, interface_sums.hpp: beside
-// a layer thinner than the node's reach, only the other one shows it whole), s the shear stress that the soil carries and
-// J the normal impulse. Impulses act on both, so momentum is exact, and each takes kinetic energy.
+// where A is the part of the surface that is the node's (the larger of the two bodies' G . n, interface_sums.hpp:
+// beside a layer thinner than the node's reach, only the other one shows it whole), s the shear stress that the soil
+// carries and J the normal impulse. Impulses act on both, so momentum is exact, and each takes kinetic energy.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "mpm_stage/boundary/soil_limit.hpp"
 #include "mpm_stage/boundary/half_spaces.hpp"
+#include "mpm_stage/boundary/soil_limit.hpp"
 #include "mpm_stage/grid/field_choice.hpp"
 #include "mpm_stage/transfer/interface_sums.hpp"
 
@@ -44,15 +44,15 @@ constexpr double rim = 0.9;
 template <int Dim>
 struct BodyAtNode {
   using Vector = std::array<double, Dim>;
-  double mass = 0.0;        // kg
-  Vector v{}, before{};     // m/s, after forces; at the step's start
-  double volume = 0.0;      // m3
-  Vector centre{};          // m, from the node
-  Vector surface{};         // m2, G
-  double strength = 0.0;    // Pa
-  bool firm = false;        // soil that does not flow: its particles show its surface best
-  bool on_ground = false;   // its approach to the ground has been stopped
-  double ground_push = 0.0; // N s, that the ground has to take besides
+  double mass = 0.0;         // kg
+  Vector v{}, before{};      // m/s, after forces; at the step's start
+  double volume = 0.0;       // m3
+  Vector centre{};           // m, from the node
+  Vector surface{};          // m2, G
+  double strength = 0.0;     // Pa
+  bool firm = false;         // soil that does not flow: its particles show its surface best
+  bool on_ground = false;    // its approach to the ground has been stopped
+  double ground_push = 0.0;  // N s, that the ground has to take besides
 
   void add(const BodyAtNode& o) {
     const double m = mass + o.mass, V = volume + o.volume;
@@ -168,8 +168,8 @@ class ContactPair {
     if (sign * along<Dim>(surface, n_) <= 0.5 * size) return;
     for (int d = 0; d < Dim; ++d) n_[d] = sign * surface[d] / size;
   }
-  // m2, of the surface between the bodies that is the node's. Where one of them is soil that does not flow, its particles
-  // show it best, unless it is a plate so thin that the node sees its other surface, too.
+  // m2, of the surface between the bodies that is the node's. Where one of them is soil that does not flow, its
+  // particles show it best, unless it is a plate so thin that the node sees its other surface, too.
   template <class Shape>
   double surface_of_both(const HalfSpaces<Shape>& half, double h) const {
     double cell = 1.0;

@@ -1,7 +1,7 @@
-// Where the surface between the material of two velocity fields lies, told from what a node sees of each, as if they were
-// half-spaces that meet in a plane. The node's weight along a line through it is that of the shape function; how it is
-// divided by the plane says how far off the plane is, and how far apart the centres of both parts lie. Material in a
-// thin layer lies nearer, across a gap it lies farther; so what the centres are farther apart is, at most, a gap.
+// Where the surface between the material of two velocity fields lies, told from what a node sees of each, as if they
+// were half-spaces that meet in a plane. The node's weight along a line through it is that of the shape function; how
+// it is divided by the plane says how far off the plane is, and how far apart the centres of both parts lie. Material
+// in a thin layer lies nearer, across a gap it lies farther; so what the centres are farther apart is, at most, a gap.
 #pragma once
 
 #include <algorithm>

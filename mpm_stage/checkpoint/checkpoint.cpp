@@ -80,10 +80,26 @@ void for_each_number(SolverState<Dim>& s, RunState& r, Action action) {
 // Rows of the series as plain numbers, for writing and for reading.
 template <class Action>
 void for_each_value(LedgerRow& r, Action action) {
-  for (double* x :
-       {&r.time, &r.kinetic, &r.elastic, &r.gravitational, &r.work.plastic, &r.work.friction, &r.work.contact, &r.work.damping,
-        &r.work.external, &r.work.removed, &r.work.pore_pressure, &r.work.transfer, &r.work.impact, &r.lost,
-        &r.residual, &r.mass, &r.momentum[0], &r.momentum[1], &r.momentum[2], &r.angular_momentum})
+  for (double* x : {&r.time,
+                    &r.kinetic,
+                    &r.elastic,
+                    &r.gravitational,
+                    &r.work.plastic,
+                    &r.work.friction,
+                    &r.work.contact,
+                    &r.work.damping,
+                    &r.work.external,
+                    &r.work.removed,
+                    &r.work.pore_pressure,
+                    &r.work.transfer,
+                    &r.work.impact,
+                    &r.lost,
+                    &r.residual,
+                    &r.mass,
+                    &r.momentum[0],
+                    &r.momentum[1],
+                    &r.momentum[2],
+                    &r.angular_momentum})
     action(*x);
 }
 

@@ -101,7 +101,8 @@ void BlockGrid<Dim>::sort(Particles<Dim>& particles, std::span<const std::uint8_
   std::vector<std::size_t> start(sorted.size() * groups + 1, 0);
   std::size_t kept = 0;
   for (std::size_t p = 0; p < n; ++p) {
-    const int group = fields.several() ? fields.of(particles, p) * materials + particles.material[p] : particles.material[p];
+    const int group =
+        fields.several() ? fields.of(particles, p) * materials + particles.material[p] : particles.material[p];
     rank_[p] = rank_of_number[rank_[p]] * groups + group;
     if (!keep.empty() && !keep[p]) continue;
     ++start[rank_[p] + 1];

@@ -89,8 +89,8 @@ class BlockGrid {
   BlockGrid(double cell_size, std::array<double, Dim> origin, double shift);
 
   // Sorts the particles by block, field, material and previous order and rebuilds the blocks. Particles whose `keep`
-  // flag is 0 are dropped (an empty span keeps all). Throws ComputationError when a particle is so far off that block numbers
-  // overflow (more than 2^20 blocks from the origin) or its position is not finite.
+  // flag is 0 are dropped (an empty span keeps all). Throws ComputationError when a particle is so far off that block
+  // numbers overflow (more than 2^20 blocks from the origin) or its position is not finite.
   void sort(Particles<Dim>& particles, std::span<const std::uint8_t> keep = {}, const FieldChoice& fields = {});
 
   // The grid of particles that were sorted before and have drifted since: `occupied` blocks, in the order that

@@ -18,8 +18,8 @@ namespace tailrun::mpm {
 
 // w, grad w (per cell) and node number of each node around particle p: action(number, w, slope[Dim]).
 template <int Dim, class Shape, class Action>
-inline void for_each_node_around(const Particles<Dim>& P, std::size_t p, const std::array<double, Dim>& corner, double h1,
-                                 Action action) {
+inline void for_each_node_around(const Particles<Dim>& P, std::size_t p, const std::array<double, Dim>& corner,
+                                 double h1, Action action) {
   constexpr int S = Shape::support, T = Tile<Dim, Shape>::side;
   double w[3][S], d[3][S], m[3][S];
   int at = 0;

@@ -37,8 +37,8 @@ template <int... Positions, class Action>
   (action(std::integral_constant<int, Positions>{}), ...);
 }
 
-// nodes[0 .. Block::nodes) = sum over the tiles `around` an active block (-1: none there); tiles hold Tile::nodes values
-// per occupied block.
+// nodes[0 .. Block::nodes) = sum over the tiles `around` an active block (-1: none there); tiles hold Tile::nodes
+// values per occupied block.
 template <int Dim, class Shape, class Value>
 inline void gather_tiles(const std::array<int, Block<Dim>::neighbours>& around, const Value* tiles, Value* nodes) {
   constexpr int own = Block<Dim>::neighbours / 2;

@@ -29,8 +29,8 @@ namespace tailrun::mpm {
 // in-plane principal stresses p +- R and zz are sorted without branches and put back by where zz stood.
 template <class Law, bool Softens, bool Rate, bool Cutoff>
 double elasto_plastic_plane(const MaterialConstants& k, Particles<2>& P, std::size_t begin, std::size_t end,
-                            const double* run_trace, const double* run_shift, double dt) {
-  const PlaneColumns c(P, run_trace, run_shift, begin);
+                            const double* run_trace, double dt) {
+  const PlaneColumns c(P, run_trace, begin);
   const std::size_t n = end - begin;
   Vec4 dissipated = {};
   const Vec4 zero = {};
@@ -115,14 +115,14 @@ double return_to_yield(const MaterialConstants& k, const Law& law, double cohesi
 
 template <class Law>
 double elasto_plastic_solid(const MaterialConstants& k, Particles<3>& P, std::size_t begin, std::size_t end,
-                            const double* trace, const double* shift, double dt) {
+                            const double* trace, double dt) {
   const Law law(k);
   double dissipated = 0.0;
   for (std::size_t p = begin; p < end; ++p) {
     const double t = trace[p - begin];
     const Matrix3 G = gradient_matrix(P, p), e = deviator_of(G);
     P.volume[p] *= volume_ratio(t);
-    Matrix3 s = elastic_trial(k, P, p, G, e, t, shift[p - begin]);
+    Matrix3 s = elastic_trial(k, P, p, G, e, t);
     P.volume[p] = std::min(P.volume[p], k.largest_specific_volume * P.mass[p]);
     dissipated += P.volume[p] * return_to_yield(k, law, P.strength[p], dt > 0.0 ? std::sqrt(2.0) * e.norm() / dt : 0.0,
                                                 s, P.plastic_strain[p]);

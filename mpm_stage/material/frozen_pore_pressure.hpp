@@ -19,15 +19,15 @@ namespace tailrun::mpm {
 template <int Dim>
 class FrozenPorePressure {
  public:
-  // `trace` (1) and `shift` (Pa) as update_stress takes them.
+  // `trace` (1) as update_stress takes it.
   FrozenPorePressure(const MaterialConstants& k, Particles<Dim>& P, std::size_t begin, std::size_t end,
-                     const double* trace, const double* shift)
+                     const double* trace)
       : P_(P), begin_(begin), end_(end), active_(k.pore_pressure == PorePressure::frozen) {
     if (!active_) return;
     trial_mean().resize(std::max(trial_mean().size(), end - begin));
     volume().resize(trial_mean().size());
     for (std::size_t p = begin; p < end; ++p) {
-      trial_mean()[p - begin] = mean(p) + k.bulk * trace[p - begin] + shift[p - begin];
+      trial_mean()[p - begin] = mean(p) + k.bulk * trace[p - begin];
       volume()[p - begin] = P.volume[p];
     }
   }

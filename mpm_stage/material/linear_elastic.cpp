@@ -24,8 +24,8 @@ void read(const CaseNode& node, Material& m) {
 }
 
 double update_plane(const MaterialConstants& k, Particles<2>& P, std::size_t begin, std::size_t end,
-                    const double* trace, const double* shift, double /*dt*/) {
-  const PlaneColumns c(P, trace, shift, begin);
+                    const double* trace, double /*dt*/) {
+  const PlaneColumns c(P, trace, begin);
   for_each_group(
       0, end - begin, [&](const auto& g) __attribute__((always_inline)) {
         const PlaneTrial t = elastic_trial(k, c, g);
@@ -39,12 +39,12 @@ double update_plane(const MaterialConstants& k, Particles<2>& P, std::size_t beg
 }
 
 double update_solid(const MaterialConstants& k, Particles<3>& P, std::size_t begin, std::size_t end,
-                    const double* trace, const double* shift, double /*dt*/) {
+                    const double* trace, double /*dt*/) {
   for (std::size_t p = begin; p < end; ++p) {
     const double t = trace[p - begin];
     const Matrix3 G = gradient_matrix(P, p), e = deviator_of(G);
     P.volume[p] *= volume_ratio(t);
-    store(P, p, elastic_trial(k, P, p, G, e, t, shift[p - begin]));
+    store(P, p, elastic_trial(k, P, p, G, e, t));
   }
   return 0.0;
 }

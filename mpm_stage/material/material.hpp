@@ -1,7 +1,7 @@
 // What a particle can be made of: parameters as the case file gives them, and the constants that the stress update of a
 // run of particles needs, worked out once. Both hold what several laws share; what one law alone knows is in `own`.
 //
-// The rest of the stage asks for properties (phi_zero, relaxed, explicit_viscosity, MaterialLaw::moves ...), never for
+// The rest of the stage asks for properties (phi_zero, flows, explicit_viscosity, MaterialLaw::moves ...), never for
 // a model by its name.
 #pragma once
 
@@ -81,10 +81,7 @@ struct MaterialConstants {
   OwnNumbers own;
 
   // Properties.
-  bool averaged = true;  // its volumetric strain, over neighbouring cells
-  // Mean stress relaxes only where strength does not depend on it: frictional soil would be pushed over its yield
-  // surface again and again, and each return would compact it a little.
-  bool relaxed = false;
+  bool averaged = true;   // its volumetric strain, over neighbouring cells
   bool flows = false;     // as MaterialLaw::flows
   bool phi_zero = false;  // its particles' strength is all the shear that it carries, whatever the mean stress
   double explicit_viscosity = 0.0;  // Pa s, of viscous stress that limits the time step (h^2 rho / eta); 0: none

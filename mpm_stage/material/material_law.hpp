@@ -25,7 +25,7 @@ struct LawLoops {
   // New stress, volume and plastic strain; arguments as update_stress (stress_update.hpp) takes them. Returns what was
   // dissipated, J. Pore pressure is not its concern.
   double (*update)(const MaterialConstants& k, Particles<Dim>& P, std::size_t begin, std::size_t end,
-                   const double* trace, const double* shift, double dt) = nullptr;
+                   const double* trace, double dt) = nullptr;
   // Recoverable energy, J.
   double (*energy)(const MaterialConstants& k, const Particles<Dim>& P, std::size_t begin, std::size_t end) = nullptr;
 };

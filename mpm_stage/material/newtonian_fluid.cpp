@@ -6,12 +6,11 @@
 // need not be the fluid's own: with waves ten times as fast as the flow, density varies by about one per cent. Pressure
 // under zero is let go (allow_tension false): a fluid with a free surface comes apart.
 //
-// Viscous stress is explicit, so viscosity limits the time step (explicit_viscosity). Mean stress relaxes, as the fluid
-// has no strength that depends on it; there the volume follows the pressure.
+// Viscous stress is explicit, so viscosity limits the time step (explicit_viscosity).
 #include <algorithm>
+#include <cmath>
 
 #include "common/case_file.hpp"
-#include "mpm_stage/material/elastic_energy.hpp"
 #include "mpm_stage/material/plane_strain.hpp"
 #include "mpm_stage/material/three_dimensions.hpp"
 
@@ -41,14 +40,14 @@ double lowest_pressure(const MaterialConstants& k) {
 }
 
 double update_plane(const MaterialConstants& k, Particles<2>& P, std::size_t begin, std::size_t end,
-                    const double* trace, const double* shift, double dt) {
-  const PlaneColumns c(P, trace, shift, begin);
+                    const double* trace, double dt) {
+  const PlaneColumns c(P, trace, begin);
   Vec4 dissipated = {};
-  const double viscous = dt > 0.0 ? 2.0 * k.explicit_viscosity / dt : 0.0, flexibility = 1.0 / k.bulk;
+  const double viscous = dt > 0.0 ? 2.0 * k.explicit_viscosity / dt : 0.0;
   const Vec4 low = splat(lowest_pressure(k));
   for_each_group(
       0, end - begin, [&](const auto& g) __attribute__((always_inline)) {
-        const Vec4 t = g.read(c.trace) + g.read(c.shift) * flexibility;
+        const Vec4 t = g.read(c.trace);
         const Vec4 growth = (1.0 + 0.25 * t) / (1.0 - 0.25 * t), volume = g.read(c.volume) * (growth * growth);
         const Vec4 pressure = larger(low, k.bulk * (g.read(c.mass) / (volume * k.reference_density) - 1.0));
         const Vec4 gxx = g.read(c.gxx), gyy = g.read(c.gyy), third = (gxx + gyy) * (1.0 / 3.0);
@@ -64,13 +63,13 @@ double update_plane(const MaterialConstants& k, Particles<2>& P, std::size_t beg
 }
 
 double update_solid(const MaterialConstants& k, Particles<3>& P, std::size_t begin, std::size_t end,
-                    const double* trace, const double* shift, double dt) {
+                    const double* trace, double dt) {
   double dissipated = 0.0;
   const double low = lowest_pressure(k);
   for (std::size_t p = begin; p < end; ++p) {
     const double t = trace[p - begin];
     const Matrix3 e = deviator_of(gradient_matrix(P, p));
-    P.volume[p] *= volume_ratio(t + shift[p - begin] / k.bulk);
+    P.volume[p] *= volume_ratio(t);
     const double pressure = std::max(low, k.bulk * (P.mass[p] / (P.volume[p] * k.reference_density) - 1.0));
     const double viscous = dt > 0.0 ? 2.0 * k.explicit_viscosity / dt : 0.0;
     store(P, p, viscous * e - pressure * Matrix3::Identity());
@@ -79,13 +78,23 @@ double update_solid(const MaterialConstants& k, Particles<3>& P, std::size_t beg
   return dissipated;
 }
 
+// Work of the pressure K (1 / J - 1) on the compression to J of the volume at no pressure, J: K V_0 (J - 1 - ln J).
+template <int Dim>
+double stored_energy(const MaterialConstants& k, const Particles<Dim>& P, std::size_t begin, std::size_t end) {
+  double energy = 0.0;
+  for (std::size_t p = begin; p < end; ++p) {
+    const double whole = P.mass[p] / k.reference_density, J = P.volume[p] / whole;
+    if (J < 1.0 || k.own.get<Own>().allow_tension) energy += k.bulk * whole * (J - 1.0 - std::log(J));
+  }
+  return energy;
+}
+
 void set_constants(const Material& m, double /*cell_size*/, MaterialConstants& k) {
   k.bulk = m.bulk_modulus;
   k.explicit_viscosity = m.rate.consistency;
   k.own = m.own;
-  k.relaxed = true;
-  k.plane = {update_plane, isotropic_energy};
-  k.solid = {update_solid, isotropic_energy};
+  k.plane = {update_plane, stored_energy<2>};
+  k.solid = {update_solid, stored_energy<3>};
 }
 
 }  // namespace

@@ -15,8 +15,7 @@ namespace {
 void read(const CaseNode& /*node*/, Material& /*m*/) {}
 
 template <int Dim>
-double update(const MaterialConstants&, Particles<Dim>&, std::size_t, std::size_t, const double*, const double*,
-              double) {
+double update(const MaterialConstants&, Particles<Dim>&, std::size_t, std::size_t, const double*, double) {
   throw ComputationError("a rigid material has no stress update");
 }
 

@@ -8,24 +8,24 @@ namespace {
 
 template <int Dim>
 StressWork update(const LawLoops<Dim>& law, const MaterialConstants& k, Particles<Dim>& P, std::size_t begin,
-                  std::size_t end, const double* trace, const double* shift, double dt) {
+                  std::size_t end, const double* trace, double dt) {
   if (k.pore_pressure == PorePressure::undrained)
     for (std::size_t p = begin; p < end; ++p) P.pore_pressure[p] -= k.pore_stiffness * trace[p - begin];
-  FrozenPorePressure<Dim> water(k, P, begin, end, trace, shift);
-  const double dissipated = law.update(k, P, begin, end, trace, shift, dt);
+  FrozenPorePressure<Dim> water(k, P, begin, end, trace);
+  const double dissipated = law.update(k, P, begin, end, trace, dt);
   return {dissipated, water.release()};
 }
 
 }  // namespace
 
 StressWork update_stress(const MaterialConstants& k, Particles<2>& P, std::size_t begin, std::size_t end,
-                         const double* trace, const double* shift, double dt) {
-  return update(k.plane, k, P, begin, end, trace, shift, dt);
+                         const double* trace, double dt) {
+  return update(k.plane, k, P, begin, end, trace, dt);
 }
 
 StressWork update_stress(const MaterialConstants& k, Particles<3>& P, std::size_t begin, std::size_t end,
-                         const double* trace, const double* shift, double dt) {
-  return update(k.solid, k, P, begin, end, trace, shift, dt);
+                         const double* trace, double dt) {
+  return update(k.solid, k, P, begin, end, trace, dt);
 }
 
 double elastic_energy(const MaterialConstants& k, const Particles<2>& P, std::size_t begin, std::size_t end) {

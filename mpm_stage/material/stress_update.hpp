@@ -16,12 +16,12 @@ struct StressWork {
 };
 
 // Particles begin .. end of `P`, whose `gradient` holds the step's midpoint gradient. `trace` has one volumetric strain
-// increment per particle of the run, which takes the place of the particle's own, `shift` what to add to the mean
-// stress, Pa (volumetric_average.hpp). `dt` s. Returns the energy dissipated in plastic and viscous flow, J.
+// increment per particle of the run, which takes the place of the particle's own (volumetric_projection.hpp). `dt` s.
+// Returns the energy dissipated in plastic and viscous flow, J.
 StressWork update_stress(const MaterialConstants& material, Particles<2>& P, std::size_t begin, std::size_t end,
-                         const double* trace, const double* shift, double dt);
+                         const double* trace, double dt);
 StressWork update_stress(const MaterialConstants& material, Particles<3>& P, std::size_t begin, std::size_t end,
-                         const double* trace, const double* shift, double dt);
+                         const double* trace, double dt);
 
 // Recoverable energy of the stresses, J, and of undrained pore water.
 double elastic_energy(const MaterialConstants& material, const Particles<2>& P, std::size_t begin, std::size_t end);

@@ -54,10 +54,10 @@ inline double volume_ratio(double trace) {
 }
 
 // Stress of particle p, turned, and with the elastic increment of the deviatoric strain `e` and the volumetric one
-// `trace`; `shift` (Pa) is added to the mean stress.
+// `trace`.
 inline Matrix3 elastic_trial(const MaterialConstants& k, const Particles<3>& P, std::size_t p, const Matrix3& G,
-                             const Matrix3& e, double trace, double shift) {
-  return rotated(stress_matrix(P, p), G) + 2.0 * k.mu * e + (k.bulk * trace + shift) * Matrix3::Identity();
+                             const Matrix3& e, double trace) {
+  return rotated(stress_matrix(P, p), G) + 2.0 * k.mu * e + k.bulk * trace * Matrix3::Identity();
 }
 
 }  // namespace tailrun::mpm

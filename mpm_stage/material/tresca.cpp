@@ -50,7 +50,6 @@ struct Tresca {
 void set_constants(const Material& m, double cell_size, MaterialConstants& k) {
   set_elastic_constants(m, k);
   set_strength_constants(m, cell_size, k);
-  k.relaxed = true;
   k.phi_zero = true;
   set_elasto_plastic_loops<Tresca>(k);
 }

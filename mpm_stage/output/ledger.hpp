@@ -33,8 +33,10 @@ class Ledger {
 
   // Adds a row. The first one is the reference. Throws ComputationError when energy has grown by more than `limit`
   // (share of the energy that has been set free so far) without work that explains it; the message names the particle
-  // with the most energy per mass.
+  // with the most energy per mass, and what may help.
   const LedgerRow& sample(double time, Solver<Dim>& solver, double limit);
+  // The same check between two rows: what would be one is returned and not kept.
+  LedgerRow look(double time, Solver<Dim>& solver, double limit) const;
 
   const std::vector<LedgerRow>& rows() const { return rows_; }
   double largest_kinetic() const { return largest_kinetic_; }  // J, of all rows
@@ -43,10 +45,14 @@ class Ledger {
     largest_kinetic_ = largest_kinetic;
   }
   // The energy that the motion so far has turned over, J: the scale for the residual.
-  double turnover() const;
+  double turnover() const { return turnover(rows_.back(), largest_kinetic_); }
   void write(const std::filesystem::path& path) const;
 
  private:
+  LedgerRow measure(double time, Solver<Dim>& solver) const;
+  double turnover(const LedgerRow& now, double largest_kinetic) const;
+  void check(const LedgerRow& now, double scale, const Solver<Dim>& solver, double limit) const;
+
   std::array<double, Dim> gravity_;
   std::vector<LedgerRow> rows_;
   double largest_kinetic_ = 0.0;

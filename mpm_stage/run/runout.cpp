@@ -4,12 +4,14 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
+#include <cmath>
 
 #include "common/application.hpp"
 #include "common/error.hpp"
 #include "common/progress.hpp"
 #include "mpm_stage/checkpoint/checkpoint.hpp"
 #include "mpm_stage/output/body_series.hpp"
+#include "mpm_stage/output/energy_watch.hpp"
 #include "mpm_stage/output/frames.hpp"
 #include "mpm_stage/output/front.hpp"
 #include "mpm_stage/output/ledger.hpp"
@@ -202,16 +204,24 @@ class Runout {
       record_.dt_min = std::min(record_.dt_min, report.dt);
       record_.dt_max = std::max(record_.dt_max, report.dt);
       record_.largest_kinetic = std::max(record_.largest_kinetic, report.kinetic_energy);
-      if ((series_due || frame_due) && record_event(series_due, frame_due, shaking_end, progress)) return;
+      if (!series_due && watch_.due(report, solver_->work()))
+        looked(ledger_.look(record_.time, *solver_, scene_.energy_growth_limit), report);
+      if ((series_due || frame_due) && record_event(report, series_due, frame_due, shaking_end, progress)) return;
       mind_checkpoints();
     }
   }
 
+  void looked(const LedgerRow& row, const StepReport& report) {
+    double g2 = 0.0;
+    for (const double g : gravity_) g2 += g * g;
+    watch_.looked(report, row, std::sqrt(g2 * row.mass), scene_.energy_growth_limit * ledger_.turnover());
+  }
+
   // Returns whether all has come to rest.
-  bool record_event(bool series_due, bool frame_due, double shaking_end, Progress& progress) {
+  bool record_event(const StepReport& report, bool series_due, bool frame_due, double shaking_end, Progress& progress) {
     const auto since = Clock::now();
     if (series_due) {
-      ledger_.sample(record_.time, *solver_, scene_.energy_growth_limit);
+      looked(ledger_.sample(record_.time, *solver_, scene_.energy_growth_limit), report);
       const FrontRow& row = front_.sample(record_.time, solver_->particles());
       bodies_.sample(record_.time, solver_->bodies());
       progress.update(record_.time, record_.steps,
@@ -261,6 +271,7 @@ class Runout {
   RunRecord record_;
   Schedule series_{scene_.output.series_interval, 0}, frame_{scene_.output.frame_interval, 0};
   Ledger<Dim> ledger_;
+  EnergyWatch watch_;
   FrontSeries<Dim> front_;
   BodySeries<Dim> bodies_;
   FrameWriter frames_;

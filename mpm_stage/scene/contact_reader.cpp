@@ -15,8 +15,7 @@ namespace {
 std::vector<int> fields_by_strength(const Scene& scene) {
   std::vector<int> field;
   std::array<bool, 2> used{};
-  for (const Material& m : scene.materials)
-    field.push_back(m.law->flows ? 1 : 0);
+  for (const Material& m : scene.materials) field.push_back(m.law->flows ? 1 : 0);
   for (const std::int32_t id : scene.particles.material_id)
     used[static_cast<std::size_t>(field[static_cast<std::size_t>(id)])] = true;
   if (!used[0] || !used[1]) field.clear();

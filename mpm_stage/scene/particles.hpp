@@ -28,7 +28,7 @@ struct Particles {
   Column strength;        // Pa, cohesion (s_R for phi = 0), per particle
   Column pore_pressure;   // Pa, compression positive; empty unless a material uses it
   AlignedVector<std::int32_t> material;
-  AlignedVector<std::int32_t> side;      // 1: on the upper side of weak soil (grid/field_sides.hpp); empty if not asked for
+  AlignedVector<std::int32_t> side;  // 1: on the upper side of weak soil (grid/field_sides.hpp); empty if not asked for
   AlignedVector<std::int32_t> identity;  // index in the file or list that the particles came from
 
   std::size_t count() const { return mass.size(); }

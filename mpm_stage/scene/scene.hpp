@@ -76,7 +76,7 @@ struct Scene {
   OutputOptions output;
   std::vector<std::string> remarks;           // what was left out or assumed, for the summary
   std::vector<std::filesystem::path> inputs;  // every file read besides the case file
-  double energy_growth_limit = 0.02;          // 1, of the energy released so far; beyond it the run stops
+  double energy_growth_limit = 0.01;          // 1, of the energy released so far; beyond it the run stops
 };
 
 // Reads a scene. `particles_override` takes the place of the case file's "particles_file". Throws InputError.

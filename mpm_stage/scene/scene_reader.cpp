@@ -67,8 +67,6 @@ void read_scheme(const CaseNode& root, Scene& scene) {
   if (o.transfer == TransferName::fmpm)
     o.fmpm_order = static_cast<int>(scheme.integer_or("fmpm_order", 2, 6, o.fmpm_order));
   o.volumetric_average = scheme.boolean_or("volumetric_average", true);
-  o.mean_stress_relaxation =
-      scheme.number_or("mean_stress_relaxation", "1", Range::between(0.0, 1.0), o.mean_stress_relaxation);
   o.soil_limits_friction = scheme.boolean_or("soil_limits_friction", true);
   o.contact_reach = scheme.number_or("contact_reach", "cells", Range::between(0.0, 1.0), o.contact_reach);
   if (const auto share = scheme.number_if("surface_share", "1", Range::between(0.0, 0.2))) o.surface_share = *share;

@@ -22,14 +22,13 @@
 #include "mpm_stage/boundary/contact_gap.hpp"
 #include "mpm_stage/boundary/field_contact.hpp"
 #include "mpm_stage/boundary/ground_friction.hpp"
+#include "mpm_stage/boundary/half_spaces.hpp"
 #include "mpm_stage/boundary/held_directions.hpp"
 #include "mpm_stage/boundary/mirror_walls.hpp"
 #include "mpm_stage/boundary/surface_extension.hpp"
-#include "mpm_stage/boundary/half_spaces.hpp"
 #include "mpm_stage/grid/field_layout.hpp"
 #include "mpm_stage/grid/field_sides.hpp"
 #include "mpm_stage/grid/tiles.hpp"
-#include "mpm_stage/material/mean_stress_relaxation.hpp"
 #include "mpm_stage/material/stress_update.hpp"
 #include "mpm_stage/step/grid_update.hpp"
 #include "mpm_stage/step/sleeping_blocks.hpp"
@@ -38,7 +37,7 @@
 #include "mpm_stage/transfer/interface_sums.hpp"
 #include "mpm_stage/transfer/mass_matrix.hpp"
 #include "mpm_stage/transfer/particles_to_grid.hpp"
-#include "mpm_stage/transfer/volumetric_average.hpp"
+#include "mpm_stage/transfer/volumetric_projection.hpp"
 
 namespace tailrun::mpm {
 
@@ -108,7 +107,6 @@ class ExplicitSolver final : public Solver<Dim> {
     StepReport report;
     const double dt = next_dt_;
     report.dt = dt;
-    for (int d = 0; d < Dim; ++d) body_[d] = body[d] + inertial[d];
     if (sleep_.active() && std::any_of(inertial.begin(), inertial.end(), [](double a) { return a != 0.0; }))
       sleep_.wake_all();
     update_grid(dt, body, inertial);
@@ -156,7 +154,7 @@ class ExplicitSolver final : public Solver<Dim> {
   std::size_t grid_bytes() const override {
     return grid_.bytes() + (tiles_.capacity() + velocity_.capacity() + change_.capacity()) * sizeof(Vec4) +
            beside_.capacity() * sizeof(SplitNode<Dim>) + (term_.capacity() + products_.capacity()) * sizeof(Vec4) +
-           averaged_tiles_.capacity() * sizeof(AveragedNode) + averaged_.capacity() * sizeof(NodeMean);
+           averaged_tiles_.capacity() * sizeof(PatchSum) + averaged_.capacity() * sizeof(PatchFit);
   }
 
  private:
@@ -177,9 +175,9 @@ class ExplicitSolver final : public Solver<Dim> {
 
   // What moves the nodes in a step.
   struct Drive {
-    double dt;                             // s
+    double dt;                               // s
     std::array<double, Dim> body, inertial;  // m/s2
-    Vec4 acceleration = {};                // `body` in the first Dim lanes
+    Vec4 acceleration = {};                  // `body` in the first Dim lanes
     bool shaken = false;
     bool untouched = true;  // but for ground and mirrors: no shaking, frictional walls or damping
   };
@@ -221,11 +219,6 @@ class ExplicitSolver final : public Solver<Dim> {
     return std::min({options_.courant * h_ / fastest_wave_ / std::sqrt(raised), options_.maximum_step,
                      viscous_limit_ / raised, limit});
   }
-  // Share of the way to the average that the mean stress goes in a step.
-  double relaxation(int material, double dt) const {
-    const auto m = static_cast<std::size_t>(material);
-    return constants_[m].relaxed ? std::min(0.5, options_.mean_stress_relaxation * dt * h1_ * wave_speed_[m]) : 0.0;
-  }
   double flip_share(double dt) const {
     return Transfer == TransferName::aflip ? 1.0 - std::min(1.0, options_.transfer_damping * dt * h1_ * fastest_wave_)
                                            : options_.flip_share;
@@ -241,7 +234,8 @@ class ExplicitSolver final : public Solver<Dim> {
     for (int d = 0; d < Dim; ++d) v[d] = velocity_[node][d];
     return v;
   }
-  // `before` (m/s) is the velocity at the step's start, which the transfer asks for where momentum and forces are apart.
+  // `before` (m/s) is the velocity at the step's start, which the transfer asks for where momentum and forces are
+  // apart.
   void set_velocity(std::size_t node, const std::array<double, Dim>& v, const std::array<double, Dim>& before) {
     velocity_[node] = node_velocity<Dim>(v.data());
     if constexpr (Split) {
@@ -276,7 +270,7 @@ class ExplicitSolver final : public Solver<Dim> {
   void drive_nodes(int f, std::size_t a, const Drive& drive, const NodeSums& node, GridSums<Dim>& sums);
   void touch_boundaries(int f, std::size_t a, const Drive& drive, const NodeSums& node, GridSums<Dim>& sums);
   NodeBodies bodies_at(std::size_t a, int n, const NodeSums* node, const InterfaceNode (*surface)[block_nodes]) const;
-  void part_fields(std::size_t a, double dt, bool rub, const NodeSums* node, GridSums<Dim>& sums);
+  void part_fields(std::size_t a, double dt, const NodeSums* node, GridSums<Dim>& sums);
   void take_over(std::size_t a, int n, const NodeSums* node, const NodeBodies& bodies, const NodeBodies& free,
                  GridSums<Dim>& sums);
   void settle_on_ground(std::size_t a, double dt, const NodeSums* node, GridSums<Dim>& sums);
@@ -284,6 +278,7 @@ class ExplicitSolver final : public Solver<Dim> {
   void add_up();
   void scatter_interfaces(std::size_t b);
   void filter_velocity(double dt);
+  bool is_shared(std::size_t a, int n) const;
   void take_increment(int f, std::size_t a);
   void find_held(int f, std::size_t a, double dt);
   void keep_contact(int f, std::size_t a);
@@ -298,6 +293,7 @@ class ExplicitSolver final : public Solver<Dim> {
   void rub_ground(const Drive& drive);
   void rub_block(int f, std::size_t a, const Drive& drive);
   void sum_kinetic_after();
+  void book_damping();
   void move_bodies(double dt);
   std::string description(std::size_t p) const;
   [[noreturn]] void fail(std::size_t begin, std::size_t end, const std::string& what) const;
@@ -317,7 +313,6 @@ class ExplicitSolver final : public Solver<Dim> {
   MirrorWalls<Dim> mirrors_;
   SurfaceExtension<Dim> extension_;
   SleepingBlocks<Dim> sleep_;
-  std::array<double, Dim> body_{};
   bool averaging_ = false, leaving_ = false, starts_with_spin_ = false;
   double kinetic_ = 0.0;     // J, of the particles on the nodes
   double nodes_gain_ = 0.0;  // J, what the nodes' kinetic energy has grown by in this step
@@ -325,14 +320,15 @@ class ExplicitSolver final : public Solver<Dim> {
   std::vector<double> wave_speed_;  // m/s, by material
 
   // Of each velocity field, one after the other (grid/field_layout.hpp):
-  AlignedVector<Vec4> tiles_;              // per occupied block
-  AlignedVector<SplitNode<Dim>> beside_;   // the same, only with Split
-  AlignedVector<Vec4> velocity_, change_;  // per active block
-  AlignedVector<Vec4> sums_, force_sums_;  // per active block, only with mirrors
+  AlignedVector<Vec4> tiles_;                     // per occupied block
+  AlignedVector<SplitNode<Dim>> beside_;          // the same, only with Split
+  AlignedVector<Vec4> velocity_, change_;         // per active block
+  AlignedVector<Vec4> sums_, force_sums_;         // per active block, only with mirrors
   AlignedVector<InterfaceNode> interface_tiles_;  // per occupied block, only with several fields
   HalfSpaces<Shape> half_spaces_;
-  AlignedVector<AveragedNode> averaged_tiles_;
-  AlignedVector<NodeMean> averaged_;
+  std::vector<std::array<double, Dim>> damped_;  // N s, taken by local damping in this step; per active block
+  AlignedVector<PatchSum> averaged_tiles_;
+  AlignedVector<PatchFit> averaged_;
   std::vector<Gap> gap_tiles_;
   std::vector<NodeGrip> grip_;  // per active block
   // FMPM: the latest term of the velocity and the mass matrix times it, per active block; what contact holds.

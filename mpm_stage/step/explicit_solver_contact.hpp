@@ -67,6 +67,20 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::sum_kinetic_after() {
   }
 }
 
+// What local damping took: as with contact, an impulse J costs - J . (v + v') / 2, v and v' the node's velocities at
+// the step's ends.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::book_damping() {
+#pragma omp parallel for schedule(static)
+  for (std::size_t a = 0; a < grid_.active(); ++a) {
+    double lost = 0.0;
+    for (int f = 0; f < fields_.count(); ++f)
+      for (std::size_t k = node_of(f, a); k < node_of(f, a) + block_nodes; ++k)
+        for (int d = 0; d < Dim; ++d) lost += damped_[k][d] * (velocity_[k][d] - 0.5 * change_of(k, d));
+    grid_sums_[a].damping = lost;
+  }
+}
+
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::move_bodies(double dt) {
   nodes_in_bodies_.clear();

@@ -13,7 +13,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& 
   const auto since = Clock::now();
   constexpr bool Flip = Transfer == TransferName::flip || Transfer == TransferName::aflip;
   constexpr bool Affine = Transfer == TransferName::apic || Transfer == TransferName::aflip;
-  // Particles that start without spin, whatever their velocities, take it from the grid as it is.
+  // Particles that start without affine velocities, whatever their velocities, take them from the grid as they are.
   const GridToParticles s{dt, h1_, flip_share(dt), time_ > 0.0 || starts_with_spin_ ? flip_share(dt) : 0.0};
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t b = 0; b < grid_.occupied(); ++b) {
@@ -111,11 +111,11 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::mind_sides(std::size_t b, Bloc
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::scatter_average(std::size_t b) {
-  AveragedNode* tile = averaged_tiles_.data() + b * tile_nodes;
-  std::fill(tile, tile + tile_nodes, AveragedNode{});
+  PatchSum* tile = averaged_tiles_.data() + b * tile_nodes;
+  std::fill(tile, tile + tile_nodes, PatchSum{});
   for (const Run& run : grid_.runs(b))
     if (constants_[run.material].averaged)
-      scatter_volumetric<Dim, Shape>(P_, run.begin, run.end, corner(b), h1_, body_, tile);
+      scatter_volumetric<Dim, Shape>(constants_[run.material], P_, run.begin, run.end, corner(b), h1_, tile);
 }
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
@@ -127,9 +127,9 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::average(bool sorted) {
   }
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t a = 0; a < grid_.active(); ++a) {
-    AveragedNode node[block_nodes];
-    gather_tiles<Dim, Shape>(grid_.tiles_around(a), averaged_tiles_.data(), node);
-    for (int n = 0; n < block_nodes; ++n) averaged_[a * block_nodes + n] = node_mean(node[n]);
+    PatchSum sum[block_nodes];
+    gather_tiles<Dim, Shape>(grid_.tiles_around(a), averaged_tiles_.data(), sum);
+    fit_patches<Dim>(sum, averaged_.data() + a * block_nodes);
   }
   add_time(seconds_.volumetric, since);
 }
@@ -162,26 +162,25 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses(double dt) {
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 StressWork ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses_of(std::size_t b, double dt) {
-  Vec4 mean[tile_nodes];
+  PatchFit fit[tile_nodes];
   bool loaded = false;
   StressWork work;
-  double trace[few_particles], shift[few_particles];
+  double trace[few_particles];
   for (const Run& run : grid_.runs(b)) {
     const MaterialConstants& k = constants_[run.material];
     if (k.averaged && !loaded) {
-      load_tile<Dim, Shape>(grid_, b, averaged_.data(), mean, [](NodeMean m) { return twice(m); });
+      load_tile<Dim, Shape>(grid_, b, averaged_.data(), fit);
       loaded = true;
     }
     for (std::size_t begin = run.begin; begin < run.end; begin += few_particles) {
       const std::size_t end = std::min(run.end, begin + few_particles);
       if (k.averaged) {
-        gather_volumetric<Dim, Shape>(P_, begin, end, corner(b), h1_, relaxation(run.material, dt), mean, trace, shift);
-        if (k.phi_zero) relax_by_used_strength(k, P_, begin, end, shift);
+        gather_volumetric<Dim, Shape>(k, P_, begin, end, corner(b), h1_, fit, trace);
       } else {
-        own_volumetric(P_, begin, end, trace, shift);
+        own_volumetric(P_, begin, end, trace);
       }
       if (inverts(trace, end - begin)) return {std::nan(""), 0.0};
-      const StressWork done = update_stress(k, P_, begin, end, trace, shift, dt);
+      const StressWork done = update_stress(k, P_, begin, end, trace, dt);
       work.dissipated += done.dissipated;
       work.pore_pressure += done.pore_pressure;
     }

@@ -36,8 +36,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::sort() {
   }
   if (sleep_.active()) sleep_.before_sort(grid_);
   grid_.sort(P_, keep, options_.fields);
-  if (options_.fields.by_side &&
-      find_sides<Dim, Shape>(grid_, options_.fields, [this](std::size_t b) { return corner(b); }, P_))
+  if (options_.fields.by_side && find_sides<Dim, Shape>(
+                                     grid_, options_.fields, [this](std::size_t b) { return corner(b); }, P_))
     grid_.sort(P_, {}, options_.fields);
   if (grid_.occupied() == 0) throw ComputationError("no particle is left in the domain");
   lay_out();
@@ -88,6 +88,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
   }
   velocity_.resize(several * grid_.active() * block_nodes);
   if (separate_change) change_.resize(velocity_.size());
+  if (options_.local_damping > 0.0) damped_.assign(velocity_.size(), {});
   if (needs_all_sums()) {
     sums_.resize(velocity_.size());
     if (Split) force_sums_.resize(velocity_.size());

@@ -20,9 +20,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::scatter_interfaces(std::size_t
 
 // The bodies at a node: fields with mass there; sides of one soil that no weak soil keeps apart move as one.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
-typename ExplicitSolver<Dim, Shape, Split, Transfer>::NodeBodies
-ExplicitSolver<Dim, Shape, Split, Transfer>::bodies_at(std::size_t a, int n, const NodeSums* node,
-                                                       const InterfaceNode (*surface)[block_nodes]) const {
+typename ExplicitSolver<Dim, Shape, Split, Transfer>::NodeBodies ExplicitSolver<Dim, Shape, Split, Transfer>::bodies_at(
+    std::size_t a, int n, const NodeSums* node, const InterfaceNode (*surface)[block_nodes]) const {
   // Where a field has less than this share of the mass, particles feel no more than that share of its velocity.
   constexpr double trace = 1e-7;
   NodeBodies bodies;
@@ -53,9 +52,9 @@ ExplicitSolver<Dim, Shape, Split, Transfer>::bodies_at(std::size_t a, int n, con
   return bodies;
 }
 
-// Contact at the shared nodes of block a; without `rub` it only stops approaches.
+// Contact at the shared nodes of block a.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::part_fields(std::size_t a, double dt, bool rub, const NodeSums* node,
+void ExplicitSolver<Dim, Shape, Split, Transfer>::part_fields(std::size_t a, double dt, const NodeSums* node,
                                                               GridSums<Dim>& sums) {
   InterfaceNode surface[most_fields][block_nodes];
   for (int f = 0; f < fields_.count(); ++f)
@@ -73,7 +72,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::part_fields(std::size_t a, dou
     if (bodies.count == 2) {
       ContactPair<Dim> pair(bodies.body[0], bodies.body[1], options_.contact, h_, dt, half_spaces_);
       pair.press();
-      if (rub) book_sliding(pair.rub());
+      book_sliding(pair.rub());
     } else if (bodies.count > 2) {
       std::array<std::optional<ContactPair<Dim>>, most_fields*(most_fields - 1) / 2> pairs;
       int count = 0;
@@ -91,7 +90,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::part_fields(std::size_t a, dou
         if (round == 0) first = change;
         if (change <= 1e-6 * first) break;
       }
-      for (int k = 0; rub && k < count; ++k) book_sliding(pairs[k]->rub());
+      for (int k = 0; k < count; ++k) book_sliding(pairs[k]->rub());
     }
     take_over(a, n, node, bodies, free, sums);
   }
@@ -164,10 +163,9 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::settle_on_ground(std::size_t a
       if (b < 0) continue;
       NodeGrip& grip = grip_[node_of(f, a) + static_cast<std::size_t>(n)];
       if (grip.pushed)
-        grip.capacity += contact[n].point[0].friction * bodies.body[b].ground_push * node[f].sum[n][0] /
-                         bodies.body[b].mass;
-      for (int d = 0; d < Dim; ++d)
-        sums.impulse[d] += node[f].sum[n][0] * (bodies.body[b].v[d] - free.body[b].v[d]);
+        grip.capacity +=
+            contact[n].point[0].friction * bodies.body[b].ground_push * node[f].sum[n][0] / bodies.body[b].mass;
+      for (int d = 0; d < Dim; ++d) sums.impulse[d] += node[f].sum[n][0] * (bodies.body[b].v[d] - free.body[b].v[d]);
     }
     take_over(a, n, node, bodies, free, sums);
   }

@@ -17,8 +17,10 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
   if (ground_.any()) rub_ground(drive);
   if (!bodies_.empty()) move_bodies(dt);
   continue_velocities();
-  if constexpr (Split)
+  if constexpr (Split) {
     if (needs_all_sums()) sum_kinetic_after();
+    if (options_.local_damping > 0.0) book_damping();
+  }
   add_up();
   add_time(seconds_.grid, since);
 }
@@ -61,6 +63,8 @@ GridSums<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::rest_block(std::size_
   for (int f = 0; f < fields_.count(); ++f) {
     if (!fields_.present(f, a)) continue;
     std::fill_n(velocity_.data() + node_of(f, a), block_nodes, Vec4{});
+    if (options_.local_damping > 0.0)
+      std::fill_n(damped_.data() + node_of(f, a), block_nodes, std::array<double, Dim>{});
     if (ground_.of_block(a)) std::fill_n(grip_.data() + node_of(f, a), block_nodes, NodeGrip{});
   }
   return {};
@@ -89,7 +93,7 @@ GridSums<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::move_block(std::size_
     else
       drive_nodes(f, a, drive, node[f], sums);
   }
-  if (fields_.shared(a)) part_fields(a, drive.dt, true, node, sums);
+  if (fields_.shared(a)) part_fields(a, drive.dt, node, sums);
   if (touched)
     for (int f = 0; f < fields_.count(); ++f)
       if (fields_.present(f, a)) touch_boundaries(f, a, drive, node[f], sums);
@@ -106,6 +110,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::drive_nodes(int f, std::size_t
     const std::size_t k = node_of(f, a) + static_cast<std::size_t>(n);
     if constexpr (separate_change) change_[k] = Vec4{};
     velocity_[k] = Vec4{};
+    if (options_.local_damping > 0.0) damped_[k] = {};
     if (m <= mass_cutoff_) continue;
     std::array<double, Dim> v, before{};
     for (int d = 0; d < Dim; ++d) {
@@ -118,8 +123,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::drive_nodes(int f, std::size_t
     }
     if constexpr (Split) {
       sums.kinetic_before += 0.5 * m * square<Dim>(before);
-      if (options_.local_damping > 0.0)
-        sums.damping += m * apply_local_damping<Dim>(options_.local_damping, drive.dt, before, v);
+      if (options_.local_damping > 0.0) damped_[k] = apply_local_damping<Dim>(options_.local_damping, m, before, v);
     }
     set_velocity(k, v, before);
     if constexpr (Split) sums.kinetic_after += 0.5 * m * square<Dim>(v);

@@ -99,20 +99,20 @@ GridSums<Dim> move_free_nodes(double dt, Vec4 acceleration, double mass_cutoff, 
   return sums;
 }
 
-// Cundall's local damping: a force of `alpha` times the unbalanced one against the motion.
+// Cundall's local damping: a force of `alpha` times the unbalanced one against the motion. Returns the impulse that
+// it takes (N s). What work that is, is known only when walls and ground have had their say: a node that they hold does
+// none.
 template <int Dim>
-inline double apply_local_damping(double alpha, double dt, const std::array<double, Dim>& before,
-                                  std::array<double, Dim>& after) {
-  double lost = 0.0;
+inline std::array<double, Dim> apply_local_damping(double alpha, double mass, const std::array<double, Dim>& before,
+                                                   std::array<double, Dim>& after) {
+  std::array<double, Dim> taken{};
   for (int d = 0; d < Dim; ++d) {
-    const double a = (after[d] - before[d]) / dt;
     if (before[d] == 0.0) continue;
-    const double taken = std::copysign(alpha * std::fabs(a) * dt, before[d]);
-    const double v = after[d] - taken;
-    lost += taken * v;
-    after[d] = v;
+    const double change = std::copysign(alpha * std::fabs(after[d] - before[d]), before[d]);
+    after[d] -= change;
+    taken[d] = mass * change;
   }
-  return lost;
+  return taken;
 }
 
 // Node planes at and beyond a frictional wall; fixed and slip walls are mirrors (mirror_walls.hpp).

@@ -5,6 +5,7 @@
 //
 // Nodes that walls, ground or bodies hold: v(1) is what contact has made of it, and each further term loses its part
 // along the held directions (held_directions.hpp), so the series inverts the mass matrix of the free directions.
+// Where velocity fields meet, all directions are held: what contact between them has settled must stay so.
 // Mirrors and continued surface nodes treat M v like any other momentum.
 //
 // The time step: with mu in [0, 1] an eigenvalue of m^-1 M, the filter multiplies accelerations by
@@ -71,16 +72,6 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::filter_velocity(double dt) {
 #pragma omp parallel for schedule(static)
     for (std::size_t k = 0; k < velocity_.size(); ++k) velocity_[k] += term_[k];
   }
-  if (fields_.several()) {
-    // What the filter gives back must not push the fields into each other.
-#pragma omp parallel for schedule(dynamic, 4)
-    for (std::size_t a = 0; a < grid_.active(); ++a) {
-      if (!fields_.shared(a)) continue;
-      NodeSums node[most_fields];
-      for (int f = 0; f < fields_.count(); ++f) node[f].sum = sums_.data() + node_of(f, a);
-      part_fields(a, dt, false, node, grid_sums_[a]);
-    }
-  }
   if (ground_.any()) {
     for_each_block([&](int f, std::size_t a) { keep_contact(f, a); });
     for (const auto& [k, b] : nodes_in_bodies_) velocity_[k] = node_velocity<Dim>(body_velocity_[b].data());
@@ -94,6 +85,15 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::filter_velocity(double dt) {
   add_time(seconds_.grid, since);
 }
 
+// Whether two fields meet at node n of active block a.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+bool ExplicitSolver<Dim, Shape, Split, Transfer>::is_shared(std::size_t a, int n) const {
+  int there = 0;
+  for (int f = 0; f < fields_.count(); ++f)
+    if (fields_.present(f, a) && sums_[node_of(f, a) + static_cast<std::size_t>(n)][0] > mass_cutoff_) ++there;
+  return there > 1;
+}
+
 // The next term of field f's nodes in block a, (I - m^-1 M) times the one before.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::take_increment(int f, std::size_t a) {
@@ -101,6 +101,9 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::take_increment(int f, std::siz
     const double m = sums_[k][0];
     term_[k] = m > mass_cutoff_ ? term_[k] - as_velocity<Dim>(products_[k]) * splat(1.0 / m) : Vec4{};
   }
+  if (fields_.shared(a))
+    for (int n = 0; n < block_nodes; ++n)
+      if (is_shared(a, n)) term_[node_of(f, a) + static_cast<std::size_t>(n)] = Vec4{};
   for (const HeldNode& node : held_nodes_[fields_.number(f, a)]) {
     if (!node.held.any()) continue;
     const double m = sums_[node.node][0];
@@ -123,8 +126,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::find_held(int f, std::size_t a
   if (!contact && !wall_nodes_.any) return;
   const double slack = 1e-12 * fastest_wave_;
   Gap gap[block_nodes];
-  if (contact)
-    gather_tiles<Dim, Shape>(fields_.around(f, a), gap_tiles_.data() + fields_.tile(f, 0) * tile_nodes, gap);
+  if (contact) gather_tiles<Dim, Shape>(fields_.around(f, a), gap_tiles_.data() + fields_.tile(f, 0) * tile_nodes, gap);
   for (int n = 0; n < block_nodes; ++n) {
     const std::size_t k = node_of(f, a) + static_cast<std::size_t>(n);
     if (sums_[k][0] <= mass_cutoff_) continue;
@@ -153,7 +155,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::keep_contact(int f, std::size_
     stop_approach<Dim>(*node.contact, m, node.allowed, v);
     // Friction has been booked with the velocity before the filter; the one after it displaces.
     if (const NodeGrip& grip = grip_[node.node]; grip.mass > 0.0) {
-      const double impulse = pooled_impulse(ground_, grip_.data() + node_of(f, 0), spread_.data() + node_of(f, 0), a, static_cast<int>(node.node % block_nodes));
+      const double impulse = pooled_impulse(ground_, grip_.data() + node_of(f, 0), spread_.data() + node_of(f, 0), a,
+                                            static_cast<int>(node.node % block_nodes));
       grid_sums_[a].friction += impulse * friction_path<Dim>(grip, node.before, v);
     }
     for (int d = 0; d < Dim; ++d) {

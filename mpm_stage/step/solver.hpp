@@ -35,18 +35,17 @@ struct SolverOptions {
   double transfer_damping = 0.3;
   int fmpm_order = 4;  // terms of the full mass matrix's inverse (mass_filter.hpp); 1 is PIC
   bool volumetric_average = true;
-  double mean_stress_relaxation = 0.5;  // 1, of the mean stress towards its average, per h / c
-  double courant = 0.5;                 // 1, dt = courant h / max(c + |v|)
-  double maximum_step = 1e30;           // s
-  bool soil_limits_friction = true;     // ground takes no more shear than phi = 0 soil carries (soil_limit.hpp)
-  double contact_reach = 0.5;           // cells: nodes up to this distance above the ground belong to it
+  double courant = 0.5;              // 1, dt = courant h / max(c + |v|)
+  double maximum_step = 1e30;        // s
+  bool soil_limits_friction = true;  // ground takes no more shear than phi = 0 soil carries (soil_limit.hpp)
+  double contact_reach = 0.5;        // cells: nodes up to this distance above the ground belong to it
   // 1, nodes under this share of the heaviest mass beside them are continued (surface_extension.hpp); 0: none. Negative
   // in a scene: not given.
   double surface_share = 0.0;
   double local_damping = 0.0;  // 1, Cundall's
   SleepOptions sleep;
   FieldChoice fields;
-  FieldContactLaw contact;  // between the fields
+  FieldContactLaw contact;    // between the fields
   double mass_cutoff = -1.0;  // 1, relative to the mean particle mass; negative: the shape function's own
 };
 
@@ -60,7 +59,8 @@ struct SolverOptions {
 // which the nodes' velocity before the step cannot be told (APIC without damping, FMPM).
 // `friction` is that of the ground and of walls, `contact` that between velocity fields.
 struct WorkDone {
-  double plastic = 0.0, friction = 0.0, contact = 0.0, damping = 0.0, external = 0.0, removed = 0.0, pore_pressure = 0.0;
+  double plastic = 0.0, friction = 0.0, contact = 0.0, damping = 0.0, external = 0.0, removed = 0.0,
+         pore_pressure = 0.0;
   double transfer = 0.0, impact = 0.0;
 };
 

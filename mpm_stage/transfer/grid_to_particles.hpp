@@ -45,20 +45,40 @@ inline std::array<double, 9> midpoint_gradient(const std::array<double, 9>& A) {
   return G;
 }
 
+// a x b of the first three lanes, 0 in the last.
+[[gnu::always_inline]] inline Vec4 cross(Vec4 a, Vec4 b) {
+  const Vec4 c = a * __builtin_shufflevector(b, b, 1, 2, 0, 3) - b * __builtin_shufflevector(a, a, 1, 2, 0, 3);
+  return __builtin_shufflevector(c, Vec4{}, 1, 2, 0, 4);
+}
+
 // What the velocity of a particle is made of. `flip` is the share of FLIP: v <- flip (v + sum w dv) + (1 - flip) sum w
 // v*. With Affine the particle also keeps the grid's affine velocity (Jiang et al. 2015); both together are AFLIP (Fei
 // et al. 2021).
 //
-// C = sum w v* r^T / D keeps the angular momentum that the velocities sum w v* leave out. A particle that keeps the
-// share `flip` of d = v_p - sum w v, what its velocity differs from the grid's before the step, has to keep that share
-// of the difference of spins, too; and it moves with another velocity than its own, which turns dt v* x (flip d) about
-// the origin. With flip skew(C_p - sum w v r^T / D) - [flip dt / (2 D) v* x d]x added to C, the angular momentum is
-// kept to round-off, as in APIC.
+// C = sum w v* r^T / D, r = x_i - x_p and D the second moment of w, keeps the angular momentum that the velocities sum
+// w v* leave out. Of d = v_p - sum w v and B = C_p - sum w v r^T / D, what a particle's velocity and affine velocity
+// differ from the grid's before the step, it keeps the same share `flip`:
+// - Energy. Let R be the way from the grid to the particles and S that back, V the nodes' velocities before and V*
+// after
+//   the step. R and S are adjoint to each other in the products of the kinetic energies, sum m V . V of the nodes and
+//   sum m (v . v + D C : C) of the particles, and neither makes anything longer. So u <- R V* + flip (1 - R S) u, u
+//   being the particles' (v, C), gives them no more than the grid gained: for flip = 1 it is u + R (V* - V), whose
+//   energy grows by <V, V* - V> + |R (V* - V)|^2 / 2, for flip = 0 it is R V*, and in between the energy is convex in
+//   flip. With d kept and the symmetric part of B dropped there is no such bound: d and C both have the motion of
+//   neighbours against each other, C anew in each step, and what the grid's forces took from C (plastic work!) comes
+//   back.
+// - Angular momentum. A particle moves with sum w v* and not with its own velocity, which turns sum m flip dt sum w v*
+// x
+//   d. That is sum m flip dt l with
+//     l = sum w (v* - sum w v*) x (v - C_p r) = (sum w v*) x (sum w dv) - sum w v* x dv - D sum_k C*_k x C_pk,
+//   dv = v* - v and C_k the columns of C, for sum_p m w (v_p + C_p r - v) = 0 at every node. Without l / D, taken from
+//   the axial vector of C times flip dt, angular momentum changes. l does not depend on the frame, and there is none
+//   where the grid moves on as the particle does; (sum w v*) x d in its place makes energy in bodies that move.
 struct GridToParticles {
   double dt;            // s
   double inverse_cell;  // 1/m
   double flip = 0.0;
-  double kept_spin = 0.0;  // share of the difference of spins that is kept: `flip` once the particles have a spin
+  double kept_affine = 0.0;  // share of B that is kept: `flip` once the particles have an affine velocity
 };
 
 // Largest displacement component (m) and speed squared, and kinetic energy (J), of the particles begin .. end.
@@ -87,9 +107,10 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
         const At ax((x - corner[0]) * h1), ay((y - corner[1]) * h1);
         const Int4 at = whole(ay.base * T + ax.base);
         const Vec4 *n0 = node + at[0], *n1 = node + at[1], *n2 = node + at[2], *n3 = node + at[3];
-        Vec4 v[2], gx[2] = {}, gy[2], cx[2] = {}, cy[2], change[2] = {}, row[2][S], spin_change = {}, across[S];
+        Vec4 v[2], gx[2] = {}, gy[2], cx[2] = {}, cy[2], change[2] = {}, row[2][S];
+        Vec4 turned = {}, change_x[2] = {}, change_row[2][S];
         for (int j = 0; j < S; ++j) {
-          Vec4 u[2][S], row_change[2] = {}, du[S];
+          Vec4 u[2][S], row_change[2] = {}, du[2][S], row_turned = {};
           for (int i = 0; i < S; ++i) {
             const int k = j * T + i;
             Vec4 lanes[4];
@@ -101,7 +122,11 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
               u[c][i] = lanes[c];
               if constexpr (Flip) row_change[c] += lanes[2 + c] * ax.w[i];
             }
-            if constexpr (Flip) du[i] = lanes[3];
+            if constexpr (Flip && Moments) {
+              du[0][i] = lanes[2];
+              du[1][i] = lanes[3];
+              row_turned += (lanes[0] * lanes[3] - lanes[1] * lanes[2]) * ax.w[i];
+            }
           }
           for (int c = 0; c < 2; ++c) {
             const LineSums line = ax.sums(u[c]);
@@ -111,8 +136,11 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
             if constexpr (Flip) change[c] += row_change[c] * ay.w[j];
           }
           if constexpr (Flip && Moments) {
-            spin_change += ax.sums(du).moment * ay.w[j];
-            across[j] = row_change[0];
+            turned += row_turned * ay.w[j];
+            for (int c = 0; c < 2; ++c) {
+              change_x[c] += ax.sums(du[c]).moment * ay.w[j];
+              change_row[c][j] = row_change[c];
+            }
           }
         }
         for (int c = 0; c < 2; ++c) {
@@ -122,14 +150,17 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
           cy[c] = line.moment;
         }
         if constexpr (Flip && Moments) {
-          spin_change -= ay.sums(across).moment;
-          const Vec4 own = g.read(P.affine[2].data()) - g.read(P.affine[1].data());
-          const Vec4 dx = g.read(P.velocity[0].data()) - v[0] + change[0];
-          const Vec4 dy = g.read(P.velocity[1].data()) - v[1] + change[1];
-          const Vec4 spin = (0.5 / C0) * (s.kept_spin * (own - C0 * (cx[1] - cy[0] - spin_change)) -
-                                          (s.flip * dt * h1 * h1 * Shape::apic) * (v[0] * dy - v[1] * dx));
-          cx[1] += spin;
-          cy[0] -= spin;
+          const Vec4 c0x = g.read(P.affine[0].data()), c0y = g.read(P.affine[1].data());
+          const Vec4 c1x = g.read(P.affine[2].data()), c1y = g.read(P.affine[3].data());
+          // C0 times the moments of a velocity is its C; D C0 = h moment_unit.
+          const Vec4 columns = (cx[0] * c1x - cx[1] * c0x + cy[0] * c1y - cy[1] * c0y) * (At::moment_unit / h1);
+          const Vec4 l = v[0] * change[1] - v[1] * change[0] - turned - columns;
+          const Vec4 spin = (0.5 * s.flip * dt * h1 / At::moment_unit) * l;
+          const double per_C0 = 1.0 / C0;
+          cx[0] += s.kept_affine * (per_C0 * c0x - (cx[0] - change_x[0]));
+          cy[0] += s.kept_affine * (per_C0 * c0y - (cy[0] - ay.sums(change_row[0]).moment)) + spin;
+          cx[1] += s.kept_affine * (per_C0 * c1x - (cx[1] - change_x[1])) - spin;
+          cy[1] += s.kept_affine * (per_C0 * c1y - (cy[1] - ay.sums(change_row[1]).moment));
         }
         if constexpr (Affine)
           for (int c = 0; c < 2; ++c) {
@@ -202,38 +233,31 @@ MotionExtremes grid_to_particles(const GridToParticles& s, const Vec4* __restric
     for (int i = 0; i < 9; ++i) P.gradient[i][p] = G[i];
     double speed = 0.0;
     if constexpr (Flip) {
-      Vec4 dv = {}, px = {}, py = {}, pz = {};
+      Vec4 dv = {}, px = {}, py = {}, pz = {}, turned = {};
       for (int k = 0; k < S; ++k)
         for (int j = 0; j < S; ++j)
           for (int i = 0; i < S; ++i) {
-            const Vec4 node = change[start + (k * T + j) * T + i];
-            dv += node * splat(w[0][i] * w[1][j] * w[2][k]);
+            const int n = (k * T + j) * T + i;
+            const Vec4 node = change[start + n];
+            const double weight = w[0][i] * w[1][j] * w[2][k];
+            dv += node * splat(weight);
             if constexpr (Affine && Shape::apic > 0.0) {
               px += node * splat(m[0][i] * w[1][j] * w[2][k]);
               py += node * splat(w[0][i] * m[1][j] * w[2][k]);
               pz += node * splat(w[0][i] * w[1][j] * m[2][k]);
+              turned += cross(velocity[start + n], node) * splat(weight);
             }
           }
       if constexpr (Affine && Shape::apic > 0.0) {
-        const double C0 = Shape::apic * h1, half = 0.5 / C0, turn = s.flip * dt * C0 * h1;
-        const double own[3] = {P.velocity[0][p] - v[0] + dv[0], P.velocity[1][p] - v[1] + dv[1],
-                               P.velocity[2][p] - v[2] + dv[2]};
-        // Twice the axial vectors: (C_zy - C_yz, C_xz - C_zx, C_yx - C_xy).
-        const double sx =
-            half * (s.kept_spin * (P.affine[7][p] - P.affine[5][p] - C0 * (cy[2] - cz[1] - py[2] + pz[1])) -
-                    turn * (v[1] * own[2] - v[2] * own[1]));
-        const double sy =
-            half * (s.kept_spin * (P.affine[2][p] - P.affine[6][p] - C0 * (cz[0] - cx[2] - pz[0] + px[2])) -
-                    turn * (v[2] * own[0] - v[0] * own[2]));
-        const double sz =
-            half * (s.kept_spin * (P.affine[3][p] - P.affine[1][p] - C0 * (cx[1] - cy[0] - px[1] + py[0])) -
-                    turn * (v[0] * own[1] - v[1] * own[0]));
-        cy[2] += sx;
-        cz[1] -= sx;
-        cz[0] += sy;
-        cx[2] -= sy;
-        cx[1] += sz;
-        cy[0] -= sz;
+        // C0 times the moments of a velocity is its C; D C0 = h.
+        const double C0 = Shape::apic * h1, per_C0 = 1.0 / C0;
+        const auto column = [&](int k) { return Vec4{P.affine[k][p], P.affine[3 + k][p], P.affine[6 + k][p], 0.0}; };
+        const Vec4 own[3] = {column(0), column(1), column(2)};
+        const Vec4 columns = (cross(cx, own[0]) + cross(cy, own[1]) + cross(cz, own[2])) * splat(1.0 / h1);
+        const Vec4 spin = (cross(v, dv) - turned - columns) * splat(0.5 * s.flip * dt * h1);
+        cx += splat(s.kept_affine) * (own[0] * splat(per_C0) - (cx - px)) + Vec4{0.0, -spin[2], spin[1], 0.0};
+        cy += splat(s.kept_affine) * (own[1] * splat(per_C0) - (cy - py)) + Vec4{spin[2], 0.0, -spin[0], 0.0};
+        cz += splat(s.kept_affine) * (own[2] * splat(per_C0) - (cz - pz)) + Vec4{-spin[1], spin[0], 0.0, 0.0};
       }
       for (int a = 0; a < 3; ++a) P.velocity[a][p] = s.flip * (P.velocity[a][p] + dv[a]) + (1.0 - s.flip) * v[a];
     } else {

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "common/error.hpp"
+#include "mpm_stage/output/energy_watch.hpp"
 
 using namespace tailrun;
 using namespace tailrun::mpm;
@@ -147,6 +148,29 @@ TEST_CASE("a body that shakes loses its energy in the transfer; what is left to 
   CHECK(std::fabs(row.residual) < 0.1 * row.lost);
 }
 
+TEST_CASE("local damping costs nothing where ground holds the soil") {
+  // Soil laid down on rough ground without the stress of its weight settles, rings, and is damped to rest.
+  Terrain ground;
+  ground.add_line({{-10.0, 0.0}, {20.0, 0.0}}, {0.5}, false);
+  SolverOptions o = with(TransferName::aflip);
+  o.local_damping = 0.3;
+  o.maximum_step = 1e30;
+  Particles<2> P = block<2>({24, 16, 1});
+  for (auto& column : P.velocity) std::fill(column.begin(), column.end(), 0.0);
+  const std::array<double, 2> gravity = {0.0, -9.81};
+  auto solver = make_solver<2>(o, h, {}, std::move(P), {elastic(1e6)}, ground, box<2>());
+  Ledger<2> ledger(gravity);
+  solver->start(1e30);
+  ledger.sample(0.0, *solver, 0.02);
+  for (double t = 0.0; t < 1.0;) t += solver->step(gravity, {}, 1e30).dt;
+  const LedgerRow& row = ledger.sample(1.0, *solver, 0.02);
+  const double settled = ledger.rows().front().gravitational - row.gravitational;
+  CHECK(settled > 0.0);
+  CHECK(row.work.damping > 0.1 * settled);
+  CHECK(row.work.damping < 0.6 * settled);
+  CHECK(std::fabs(row.residual) < 0.05 * settled);
+}
+
 TEST_CASE("FMPM cannot tell transfer and impacts from the residual, and says so") {
   const Terrain none;
   Account<2> run(with(TransferName::fmpm), block<2>({24, 16, 1}), 1e6, none, box<2>());
@@ -176,8 +200,33 @@ TEST_CASE("when energy grows from nothing, the particle that has it is named, wi
                        ComputationError);
   CHECK_THROWS_WITH_AS(run.ledger.sample(run.time, *run.solver, 0.02), doctest::Contains("kinetic energy of 1.4"),
                        ComputationError);
+  CHECK_THROWS_WITH_AS(run.ledger.look(run.time, *run.solver, 0.02), doctest::Contains("energy has grown"),
+                       ComputationError);
+  CHECK(run.ledger.rows().size() == 4);
   P.velocity[0][fast] = 0.0;
   P.stress[0][fast] = -1e8;
   CHECK_THROWS_WITH_AS(run.ledger.sample(run.time, *run.solver, 0.02), doctest::Contains(expected.c_str()),
                        ComputationError);
+}
+
+TEST_CASE("a look is called for by what a step reports, and every so many steps") {
+  EnergyWatch watch;
+  LedgerRow row;
+  row.elastic = 10.0;
+  StepReport report;
+  report.dt = 1e-3;
+  report.kinetic_energy = 100.0;
+  WorkDone work;
+  watch.looked(report, row, 9.81 * std::sqrt(50.0), 2.0);
+  // Gravity may give 9.81 sqrt(2 50 100) 1e-3 = 0.98 J in a step, the stresses gave 10 J, half of 2 J may come from
+  // nothing.
+  report.kinetic_energy = 111.0;
+  CHECK(!watch.due(report, work));
+  work.plastic = 3.0;
+  CHECK(watch.due(report, work));
+  work.external = 3.0;
+  CHECK(!watch.due(report, work));
+  int quiet = 3;
+  while (!watch.due(report, work)) ++quiet;
+  CHECK(quiet + 1 == EnergyWatch::steps);
 }

@@ -43,8 +43,8 @@ MaterialConstants sand(PorePressure pore_pressure) {
 void update(const MaterialConstants& k, Particles<2>& P, const std::array<double, 4>& A, double dt) {
   const auto G = midpoint_gradient(A);
   for (int i = 0; i < 4; ++i) P.gradient[i][0] = G[i];
-  const double trace = G[0] + G[3], shift = 0.0;
-  update_stress(k, P, 0, 1, &trace, &shift, dt);
+  const double trace = G[0] + G[3];
+  update_stress(k, P, 0, 1, &trace, dt);
 }
 
 }  // namespace
@@ -122,8 +122,8 @@ TEST_CASE("soil that opens loses its frozen pore pressure, and its work is u dV"
   const auto expand = [&](double strain) {
     const auto G = midpoint_gradient(std::array<double, 4>{strain, 0.0, 0.0, strain});
     for (int i = 0; i < 4; ++i) P.gradient[i][0] = G[i];
-    const double trace = G[0] + G[3], shift = 0.0;
-    return update_stress(k, P, 0, 1, &trace, &shift, 1e-3);
+    const double trace = G[0] + G[3];
+    return update_stress(k, P, 0, 1, &trace, 1e-3);
   };
   // While the skeleton is in compression nothing happens to the water.
   const double to_apex = 5e4 / (2.0 * k.bulk);

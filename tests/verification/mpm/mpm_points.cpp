@@ -212,7 +212,7 @@ double rigid_turns() {
     P.gradient[0][0] = P.gradient[3][0] = 0.0;
     P.gradient[1][0] = -2.0 * half;
     P.gradient[2][0] = 2.0 * half;
-    update_stress(k, P, 0, 1, &none, &none, 1e-3);
+    update_stress(k, P, 0, 1, &none, 1e-3);
   }
   const double c = std::cos(angle), s = std::sin(angle);
   const double exact[4] = {c * c * stress[0] - 2.0 * c * s * stress[3] + s * s * stress[1],
