@@ -44,15 +44,13 @@ constexpr double rim = 0.9;
 template <int Dim>
 struct BodyAtNode {
   using Vector = std::array<double, Dim>;
-  double mass = 0.0;         // kg
-  Vector v{}, before{};      // m/s, after forces; at the step's start
-  double volume = 0.0;       // m3
-  Vector centre{};           // m, from the node
-  Vector surface{};          // m2, G
-  double strength = 0.0;     // Pa
-  bool firm = false;         // soil that does not flow: its particles show its surface best
-  bool on_ground = false;    // its approach to the ground has been stopped
-  double ground_push = 0.0;  // N s, that the ground has to take besides
+  double mass = 0.0;      // kg
+  Vector v{}, before{};   // m/s, after forces; at the step's start
+  double volume = 0.0;    // m3
+  Vector centre{};        // m, from the node
+  Vector surface{};       // m2, G
+  double strength = 0.0;  // Pa
+  bool firm = false;      // soil that does not flow: its particles show its surface best
 
   void add(const BodyAtNode& o) {
     const double m = mass + o.mass, V = volume + o.volume;
@@ -93,6 +91,8 @@ template <int Dim>
 class ContactPair {
  public:
   using Vector = std::array<double, Dim>;
+
+  ContactPair() = default;
   // `h` is the cell (m).
   template <class Shape>
   ContactPair(BodyAtNode<Dim>& i, BodyAtNode<Dim>& j, const FieldContactLaw& law, double h, double dt,
@@ -128,18 +128,6 @@ class ContactPair {
     normal_ = impulse;
     push(n_, change);
     return std::fabs(change);
-  }
-
-  // One of the two rests on the ground: it cannot give way, and passes on what presses it there.
-  void press_onto_ground() {
-    if (mixed_ || !presses_ || i_->on_ground == j_->on_ground) return;
-    const double more = approach() - allowed_;
-    if (more <= 0.0) return;
-    BodyAtNode<Dim>&free = i_->on_ground ? *j_ : *i_, &held = i_->on_ground ? *i_ : *j_;
-    const double sign = i_->on_ground ? 1.0 : -1.0;
-    for (int d = 0; d < Dim; ++d) free.v[d] += sign * more * n_[d];
-    held.ground_push += free.mass * more;
-    normal_ += free.mass * more;
   }
 
   // Brakes the sliding. Returns the work that it takes, J: the impulse times the sliding that is left.
@@ -189,11 +177,25 @@ class ContactPair {
     }
   }
 
-  BodyAtNode<Dim>*i_, *j_;
+  BodyAtNode<Dim>*i_ = nullptr, *j_ = nullptr;
   FieldContactLaw law_;
   Vector n_{};
-  double reduced_, allowed_ = 0.0, cohesive_ = 0.0, normal_ = 0.0;
+  double reduced_ = 0.0, allowed_ = 0.0, cohesive_ = 0.0, normal_ = 0.0;
   bool mixed_ = false, presses_ = true, touches_ = false;
+};
+
+// The few pairs of a node.
+template <int Dim>
+class ContactPairs {
+ public:
+  void add(const ContactPair<Dim>& pair) { pairs_[count_++] = pair; }
+  int count() const { return count_; }
+  ContactPair<Dim>* begin() { return pairs_.data(); }
+  ContactPair<Dim>* end() { return pairs_.data() + count_; }
+
+ private:
+  std::array<ContactPair<Dim>, most_fields*(most_fields - 1) / 2> pairs_;
+  int count_ = 0;
 };
 
 // Whether `weak` lies between the bodies a and b.

@@ -95,13 +95,6 @@ inline NodeGrip stop_approach(const NodeContact& contact, double mass, double al
   return grip;
 }
 
-// m/s, away from the first surface that the node touches.
-template <std::size_t Dim>
-inline double along_normal(const NodeContact& contact, const std::array<double, Dim>& v) {
-  const auto& n = contact.point[0].normal;
-  return v[0] * n[0] + v[1] * n[1];
-}
-
 // Takes at most `impulse` (N s) off the tangential momentum. Returns the energy lost to sliding, J: the impulse times
 // the velocity that the node keeps, for it is that velocity which displaces it.
 template <int Dim>

@@ -16,7 +16,6 @@
 #include <chrono>
 #include <cmath>
 #include <map>
-#include <optional>
 
 #include "common/error.hpp"
 #include "mpm_stage/boundary/contact_gap.hpp"
@@ -270,10 +269,12 @@ class ExplicitSolver final : public Solver<Dim> {
   void drive_nodes(int f, std::size_t a, const Drive& drive, const NodeSums& node, GridSums<Dim>& sums);
   void touch_boundaries(int f, std::size_t a, const Drive& drive, const NodeSums& node, GridSums<Dim>& sums);
   NodeBodies bodies_at(std::size_t a, int n, const NodeSums* node, const InterfaceNode (*surface)[block_nodes]) const;
+  void load_interfaces(std::size_t a, InterfaceNode (*surface)[block_nodes]) const;
+  ContactPairs<Dim> contact_pairs(NodeBodies& bodies, double dt) const;
   void part_fields(std::size_t a, double dt, const NodeSums* node, GridSums<Dim>& sums);
-  void take_over(std::size_t a, int n, const NodeSums* node, const NodeBodies& bodies, const NodeBodies& free,
-                 GridSums<Dim>& sums);
+  void take_over(std::size_t a, int n, const NodeSums* node, const NodeBodies& bodies, GridSums<Dim>& sums);
   void settle_on_ground(std::size_t a, double dt, const NodeSums* node, GridSums<Dim>& sums);
+  void book_impacts(int f, std::size_t a, const Drive& drive, const NodeSums& node, GridSums<Dim>& sums);
   void continue_velocities();
   void add_up();
   void scatter_interfaces(std::size_t b);

@@ -52,55 +52,57 @@ typename ExplicitSolver<Dim, Shape, Split, Transfer>::NodeBodies ExplicitSolver<
   return bodies;
 }
 
-// Contact at the shared nodes of block a.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::part_fields(std::size_t a, double dt, const NodeSums* node,
-                                                              GridSums<Dim>& sums) {
-  InterfaceNode surface[most_fields][block_nodes];
+void ExplicitSolver<Dim, Shape, Split, Transfer>::load_interfaces(std::size_t a,
+                                                                  InterfaceNode (*surface)[block_nodes]) const {
   for (int f = 0; f < fields_.count(); ++f)
     if (fields_.present(f, a))
       gather_tiles<Dim, Shape>(fields_.around(f, a), interface_tiles_.data() + fields_.tile(f, 0) * tile_nodes,
                                surface[f]);
-  const auto book_sliding = [&sums](double work) {
-    sums.contact += work;
-    sums.impact -= work;  // of what take_over books there as a whole
-  };
+}
+
+// The contacts between the bodies of a node, at which the pairs point.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+ContactPairs<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::contact_pairs(NodeBodies& bodies, double dt) const {
+  ContactPairs<Dim> pairs;
+  for (int i = 0; i < bodies.count; ++i)
+    for (int j = i + 1; j < bodies.count; ++j) {
+      // Both sides of weak soil meet through it alone.
+      if (options_.fields.by_side && i != bodies.of_field[1] && j != bodies.of_field[1]) continue;
+      pairs.add(ContactPair<Dim>(bodies.body[i], bodies.body[j], options_.contact, h_, dt, half_spaces_));
+    }
+  return pairs;
+}
+
+// Contact at the shared nodes of block a.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::part_fields(std::size_t a, double dt, const NodeSums* node,
+                                                              GridSums<Dim>& sums) {
+  // A light layer between heavy bodies passes on little with each round.
+  constexpr int most_rounds = 30;
+  constexpr double little = 1e-6;
+  InterfaceNode surface[most_fields][block_nodes];
+  load_interfaces(a, surface);
   for (int n = 0; n < block_nodes; ++n) {
     NodeBodies bodies = bodies_at(a, n, node, surface);
     if (bodies.count == 0) continue;
-    const NodeBodies free = bodies;
-    if (bodies.count == 2) {
-      ContactPair<Dim> pair(bodies.body[0], bodies.body[1], options_.contact, h_, dt, half_spaces_);
-      pair.press();
-      book_sliding(pair.rub());
-    } else if (bodies.count > 2) {
-      std::array<std::optional<ContactPair<Dim>>, most_fields*(most_fields - 1) / 2> pairs;
-      int count = 0;
-      for (int i = 0; i < bodies.count; ++i)
-        for (int j = i + 1; j < bodies.count; ++j) {
-          // Both sides of weak soil meet through it alone.
-          if (options_.fields.by_side && i != bodies.of_field[1] && j != bodies.of_field[1]) continue;
-          pairs[count++].emplace(bodies.body[i], bodies.body[j], options_.contact, h_, dt, half_spaces_);
-        }
-      // A light layer between heavy bodies passes on little with each round.
-      double first = 0.0, change = 0.0;
-      for (int round = 0; round < 30; ++round) {
-        change = 0.0;
-        for (int k = 0; k < count; ++k) change += pairs[k]->press();
-        if (round == 0) first = change;
-        if (change <= 1e-6 * first) break;
-      }
-      for (int k = 0; k < count; ++k) book_sliding(pairs[k]->rub());
+    auto pairs = contact_pairs(bodies, dt);
+    double first = 0.0, change = 0.0;
+    for (int round = 0; round < most_rounds; ++round) {
+      change = 0.0;
+      for (ContactPair<Dim>& pair : pairs) change += pair.press();
+      if (round == 0) first = change;
+      if (pairs.count() < 2 || change <= little * first) break;
     }
-    take_over(a, n, node, bodies, free, sums);
+    for (ContactPair<Dim>& pair : pairs) sums.contact += pair.rub();
+    take_over(a, n, node, bodies, sums);
   }
 }
 
-// The fields' velocities from those of the bodies that they belong to; `free` is how these were before contact.
+// The fields' velocities from those of the bodies that they belong to.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::take_over(std::size_t a, int n, const NodeSums* node,
-                                                            const NodeBodies& bodies, const NodeBodies& free,
-                                                            GridSums<Dim>& sums) {
+                                                            const NodeBodies& bodies, GridSums<Dim>& sums) {
   for (int f = 0; f < fields_.count(); ++f) {
     const int b = bodies.of_field[f];
     if (b < 0) continue;
@@ -115,18 +117,14 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::take_over(std::size_t a, int n
     }
     set_velocity(k, bodies.body[b].v, bodies.body[b].before);
   }
-  if constexpr (Split)
-    for (int b = 0; b < bodies.count; ++b) {
-      const auto &v = bodies.body[b].v, &pushed = free.body[b].v;
-      for (int d = 0; d < Dim; ++d)
-        sums.impact -= 0.5 * bodies.body[b].mass * (v[d] - pushed[d]) * (bodies.body[b].before[d] + v[d]);
-    }
 }
 
-// Where one of two fields that touch rests on the ground, the other cannot push it away.
+// Where one of two fields that touch rests on the ground it cannot give way, and passes on what presses it there. Both
+// contacts are taken in turn; each takes energy, so that what is left after the last round is harmless.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::settle_on_ground(std::size_t a, double dt, const NodeSums* node,
                                                                    GridSums<Dim>& sums) {
+  constexpr int most_rounds = 20;
   const NodeContact* contact = ground_.of_block(a);
   InterfaceNode surface[most_fields][block_nodes];
   bool loaded = false;
@@ -138,36 +136,35 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::settle_on_ground(std::size_t a
       ++present;
       resting += grip_[node_of(f, a) + static_cast<std::size_t>(n)].pushed ? 1 : 0;
     }
-    if (resting == 0 || resting == present) continue;
-    if (!loaded)
-      for (int f = 0; f < fields_.count(); ++f)
-        if (fields_.present(f, a))
-          gather_tiles<Dim, Shape>(fields_.around(f, a), interface_tiles_.data() + fields_.tile(f, 0) * tile_nodes,
-                                   surface[f]);
+    if (resting == 0 || present < 2) continue;
+    if (!loaded) load_interfaces(a, surface);
     loaded = true;
     NodeBodies bodies = bodies_at(a, n, node, surface);
+    if (bodies.count < 2) continue;
+    std::array<bool, most_fields> rests{};
+    std::array<double, most_fields> capacity{};
     for (int f = 0; f < fields_.count(); ++f)
       if (bodies.of_field[f] >= 0 && grip_[node_of(f, a) + static_cast<std::size_t>(n)].pushed)
-        bodies.body[bodies.of_field[f]].on_ground = true;
+        rests[bodies.of_field[f]] = true;
     const NodeBodies free = bodies;
-    for (int i = 0; i < bodies.count; ++i)
-      for (int j = i + 1; j < bodies.count; ++j)
-        ContactPair<Dim>(bodies.body[i], bodies.body[j], options_.contact, h_, dt, half_spaces_).press_onto_ground();
-    // Nor is the other pushed into the ground.
-    for (int b = 0; b < bodies.count; ++b) {
-      const double approach = -along_normal(contact[n], free.body[b].v);
-      stop_approach<Dim>(contact[n], bodies.body[b].mass, std::max(0.0, approach), bodies.body[b].v);
+    auto pairs = contact_pairs(bodies, dt);
+    for (int round = 0; round < most_rounds; ++round) {
+      double change = 0.0;
+      for (ContactPair<Dim>& pair : pairs) change += pair.press();
+      if (change <= 0.0) break;
+      for (int b = 0; b < bodies.count; ++b)
+        if (rests[b])
+          capacity[b] += stop_approach<Dim>(contact[n], bodies.body[b].mass, 0.0, bodies.body[b].v).capacity;
     }
     for (int f = 0; f < fields_.count(); ++f) {
       const int b = bodies.of_field[f];
       if (b < 0) continue;
       NodeGrip& grip = grip_[node_of(f, a) + static_cast<std::size_t>(n)];
-      if (grip.pushed)
-        grip.capacity +=
-            contact[n].point[0].friction * bodies.body[b].ground_push * node[f].sum[n][0] / bodies.body[b].mass;
-      for (int d = 0; d < Dim; ++d) sums.impulse[d] += node[f].sum[n][0] * (bodies.body[b].v[d] - free.body[b].v[d]);
+      const double m = node[f].sum[n][0];
+      if (grip.pushed) grip.capacity += capacity[b] * m / bodies.body[b].mass;
+      for (int d = 0; d < Dim; ++d) sums.impulse[d] += m * (bodies.body[b].v[d] - free.body[b].v[d]);
     }
-    take_over(a, n, node, bodies, free, sums);
+    take_over(a, n, node, bodies, sums);
   }
 }
 

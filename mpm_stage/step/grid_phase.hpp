@@ -98,7 +98,31 @@ GridSums<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::move_block(std::size_
     for (int f = 0; f < fields_.count(); ++f)
       if (fields_.present(f, a)) touch_boundaries(f, a, drive, node[f], sums);
   if (fields_.shared(a) && ground_.of_block(a)) settle_on_ground(a, drive.dt, node, sums);
+  if constexpr (Split)
+    if (touched || fields_.shared(a)) {
+      sums.impact = -sums.friction - sums.contact;
+      for (int f = 0; f < fields_.count(); ++f)
+        if (fields_.present(f, a)) book_impacts(f, a, drive, node[f], sums);
+    }
   return sums;
+}
+
+// What contact took from the nodes of field f, friction and all: an impulse J costs - J . (v + v') / 2 with the
+// velocities at the step's ends.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::book_impacts(int f, std::size_t a, const Drive& drive,
+                                                               const NodeSums& node, GridSums<Dim>& sums) {
+  for (int n = 0; n < block_nodes; ++n) {
+    const double m = node.sum[n][0];
+    if (m <= mass_cutoff_) continue;
+    const std::size_t k = node_of(f, a) + static_cast<std::size_t>(n);
+    for (int d = 0; d < Dim; ++d) {
+      double impulse = m * (velocity_[k][d] - drive.dt * (drive.body[d] + drive.inertial[d])) - node.sum[n][1 + d] -
+                       drive.dt * node.force[n][1 + d];
+      if (options_.local_damping > 0.0) impulse += damped_[k][d];
+      sums.impact -= impulse * (velocity_[k][d] - 0.5 * change_of(k, d));
+    }
+  }
 }
 
 // v = p / m + dt (f / m + b), and local damping.
@@ -160,7 +184,6 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::touch_boundaries(int f, std::s
         grip.carried = carried_by_soil(
             gap[n], ground_.surfaces(a)[n] * share_inside<Dim>(wall_nodes_, grid_.node_index(a, n)), dt);
     }
-    const double rubbed = sums.friction;
     if (wall_nodes_.any) apply_walls<Dim>(wall_nodes_, grid_.node_index(a, n), m, v, sums);
     for (int d = 0; d < Dim; ++d) sums.impulse[d] += m * (v[d] - pushed[d]);
     if (drive.shaken)
@@ -168,8 +191,6 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::touch_boundaries(int f, std::s
     if constexpr (Split) {
       for (int d = 0; d < Dim; ++d) before[d] = pushed[d] - change_of(k, d);
       sums.kinetic_after += 0.5 * m * (square<Dim>(v) - square<Dim>(pushed));
-      for (int d = 0; d < Dim; ++d) sums.impact -= 0.5 * m * (v[d] - pushed[d]) * (before[d] + v[d]);
-      sums.impact -= sums.friction - rubbed;
     }
     if (v != pushed) set_velocity(k, v, before);
   }
