@@ -197,6 +197,8 @@ void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, do
     file.write("/grid/grip", state.grip.smoothed, Block<Dim>::nodes, "m/s2",
                "smoothed friction per mass of their nodes");
   }
+  file.write("/grid/meeting", std::span<const std::int32_t>(state.meeting), 0, "1",
+             "nodes at which velocity fields met in the last step");
   file.write("/grid/sleep_clocks", state.sleep_clocks, 0, "s",
              "of each block: calm so far, or minus the rest of its nap");
   file.write("/particles/removed", std::span<const std::int32_t>(state.removed), 0, "1", "rows of the input");
@@ -274,6 +276,9 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
     state.grip.smoothed = file.doubles("/grid/grip", gripping, Block<Dim>::nodes);
   }
   state.wave_speed = file.doubles("/grid/wave_speed");
+  const auto meeting = file.integers("/grid/meeting");
+  check_indices(file, "/grid/meeting", meeting, 0, 2);
+  state.meeting.assign(meeting.begin(), meeting.end());
   state.sleep_clocks = file.doubles("/grid/sleep_clocks");
   if (!state.sleep_clocks.empty() && state.sleep_clocks.size() != state.blocks.size())
     file.fail("/grid/sleep_clocks",

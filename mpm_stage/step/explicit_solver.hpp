@@ -268,18 +268,21 @@ class ExplicitSolver final : public Solver<Dim> {
   GridSums<Dim> move_block(std::size_t a, const Drive& drive);
   void drive_nodes(int f, std::size_t a, const Drive& drive, const NodeSums& node, GridSums<Dim>& sums);
   void touch_boundaries(int f, std::size_t a, const Drive& drive, const NodeSums& node, GridSums<Dim>& sums);
-  NodeBodies bodies_at(std::size_t a, int n, const NodeSums* node, const InterfaceNode (*surface)[block_nodes]) const;
+  unsigned fields_at(std::size_t a, int n, const NodeSums* node) const;
+  NodeBodies bodies_at(std::size_t a, int n, unsigned there, const NodeSums* node,
+                       const InterfaceNode (*surface)[block_nodes]) const;
+  void set_motion(std::size_t node, BodyAtNode<Dim>& body) const;
+  void join_sides(std::size_t a, int n, const NodeSums* node, GridSums<Dim>& sums);
   void load_interfaces(std::size_t a, InterfaceNode (*surface)[block_nodes]) const;
   ContactPairs<Dim> contact_pairs(NodeBodies& bodies, double dt) const;
   void part_fields(std::size_t a, double dt, const NodeSums* node, GridSums<Dim>& sums);
   void take_over(std::size_t a, int n, const NodeSums* node, const NodeBodies& bodies, GridSums<Dim>& sums);
-  void settle_on_ground(std::size_t a, double dt, const NodeSums* node, GridSums<Dim>& sums);
+  void settle_on_ground(std::size_t a, double dt, const NodeSums* node, const std::uint8_t* met, GridSums<Dim>& sums);
   void book_impacts(int f, std::size_t a, const Drive& drive, const NodeSums& node, GridSums<Dim>& sums);
   void continue_velocities();
   void add_up();
   void scatter_interfaces(std::size_t b);
   void filter_velocity(double dt);
-  bool is_shared(std::size_t a, int n) const;
   void take_increment(int f, std::size_t a);
   void find_held(int f, std::size_t a, double dt);
   void keep_contact(int f, std::size_t a);
@@ -326,6 +329,7 @@ class ExplicitSolver final : public Solver<Dim> {
   AlignedVector<Vec4> velocity_, change_;         // per active block
   AlignedVector<Vec4> sums_, force_sums_;         // per active block, only with mirrors
   AlignedVector<InterfaceNode> interface_tiles_;  // per occupied block, only with several fields
+  std::vector<std::uint8_t> meeting_;  // per active block: nodes at which fields met in the last step; several fields
   HalfSpaces<Shape> half_spaces_;
   std::vector<std::array<double, Dim>> damped_;  // N s, taken by local damping in this step; per active block
   AlignedVector<PatchSum> averaged_tiles_;

@@ -85,6 +85,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
     force_sums_.clear();
     grip_.clear();
     interface_tiles_.resize(tiles_.size());
+    // Who meets where is found out anew in the next step.
+    meeting_.assign(grid_.active() * block_nodes, 1);
   }
   velocity_.resize(several * grid_.active() * block_nodes);
   if (separate_change) change_.resize(velocity_.size());
@@ -205,6 +207,7 @@ SolverState<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::state() const {
   s.removed = removed_;
   s.held = held();
   s.sleep_clocks = sleep_.clocks();
+  s.meeting.assign(meeting_.begin(), meeting_.end());
   return s;
 }
 
@@ -228,6 +231,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::resume(Particles<Dim> particle
   time_ = s.time;
   bodies_ = s.bodies;
   remember_grip(s.grip);
+  meeting_.assign(s.meeting.begin(), s.meeting.end());
   removed_ = s.removed;
   for (const std::int32_t k : s.held) held_[static_cast<std::size_t>(k)] = 1;
   particles_to_grid();

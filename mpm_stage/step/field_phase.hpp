@@ -6,50 +6,92 @@
 
 namespace tailrun::mpm {
 
-// The surfaces of the materials in block b, for contact.
+// The surfaces of the materials in block b, for contact: of particles that reach nodes at which fields met in the last
+// step. A node where they meet for the first time has a trace of the one, and waits for the next.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::scatter_interfaces(std::size_t b) {
+  constexpr int S = Shape::support, T = Tile<Dim, Shape>::side;
+  std::uint8_t meet[tile_nodes], wanted[tile_nodes];
+  load_tile<Dim, Shape>(grid_, b, meeting_.data(), meet);
+  for (int n = 0; n < tile_nodes; ++n) {
+    int last = n;  // of the nodes of a particle whose first one is n
+    std::uint8_t any = 0;
+    for (int l = 0; l < (Dim == 3 ? S : 1); ++l)
+      for (int j = 0; j < S; ++j)
+        for (int i = 0; i < S; ++i) {
+          last = n + (l * T + j) * T + i;
+          if (last < tile_nodes) any |= meet[last];
+        }
+    wanted[n] = any;
+  }
   int field = -1;
   for (const Run& run : grid_.runs(b)) {
     InterfaceNode* tile = interface_tiles_.data() + fields_.tile(run.field, b) * tile_nodes;
     if (run.field != field) std::fill_n(tile, tile_nodes, InterfaceNode{});
     field = run.field;
-    scatter_interface<Dim, Shape>(constants_[run.material], P_, run.begin, run.end, corner(b), h1_, tile);
+    scatter_interface<Dim, Shape>(constants_[run.material], P_, run.begin, run.end, corner(b), h1_, wanted, tile);
   }
 }
 
-// The bodies at a node: fields with mass there; sides of one soil that no weak soil keeps apart move as one.
+// Which fields have more than a trace of the mass at node n of active block a, as bits. Where a field has less,
+// particles feel no more than that share of its velocity.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
-typename ExplicitSolver<Dim, Shape, Split, Transfer>::NodeBodies ExplicitSolver<Dim, Shape, Split, Transfer>::bodies_at(
-    std::size_t a, int n, const NodeSums* node, const InterfaceNode (*surface)[block_nodes]) const {
-  // Where a field has less than this share of the mass, particles feel no more than that share of its velocity.
+unsigned ExplicitSolver<Dim, Shape, Split, Transfer>::fields_at(std::size_t a, int n, const NodeSums* node) const {
   constexpr double trace = 1e-7;
-  NodeBodies bodies;
   double mass = 0.0;
   for (int f = 0; f < fields_.count(); ++f)
     if (fields_.present(f, a)) mass += node[f].sum[n][0];
-  if (mass <= mass_cutoff_) return bodies;
+  unsigned there = 0;
+  for (int f = 0; f < fields_.count(); ++f)
+    if (fields_.present(f, a) && node[f].sum[n][0] > std::max(mass_cutoff_, trace * mass)) there |= 1U << f;
+  return there;
+}
+
+// The bodies at a node with the fields `there`; sides of one soil that no weak soil keeps apart move as one.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+typename ExplicitSolver<Dim, Shape, Split, Transfer>::NodeBodies ExplicitSolver<Dim, Shape, Split, Transfer>::bodies_at(
+    std::size_t a, int n, unsigned there, const NodeSums* node, const InterfaceNode (*surface)[block_nodes]) const {
+  NodeBodies bodies;
   for (int f = 0; f < fields_.count(); ++f) {
-    if (!fields_.present(f, a)) continue;
-    const double m = node[f].sum[n][0];
-    if (m <= mass_cutoff_ || m <= trace * mass) continue;
-    BodyAtNode<Dim> body = body_at_node<Dim>(m, surface[f][n]);
+    if (!(there >> f & 1U)) continue;
+    BodyAtNode<Dim>& body = bodies.body[bodies.count];
+    body = body_at_node<Dim>(node[f].sum[n][0], surface[f][n]);
     body.firm = options_.fields.firm(f);
-    const std::size_t k = node_of(f, a) + static_cast<std::size_t>(n);
-    body.v = velocity_at(k);
-    if constexpr (Split)
-      for (int d = 0; d < Dim; ++d) body.before[d] = body.v[d] - change_of(k, d);
-    bodies.of_field[f] = bodies.count;
-    bodies.body[bodies.count++] = body;
+    set_motion(node_of(f, a) + static_cast<std::size_t>(n), body);
+    bodies.of_field[f] = bodies.count++;
   }
   const int lower = bodies.of_field[0], weak = bodies.of_field[1], upper = bodies.of_field[2];
   if (options_.fields.by_side && lower >= 0 && upper >= 0 &&
-      (weak < 0 || !lies_between(bodies.body[weak], bodies.body[lower], bodies.body[upper]))) {
+      !lies_between(bodies.body[weak], bodies.body[lower], bodies.body[upper])) {
     bodies.body[lower].add(bodies.body[upper]);
     bodies.of_field[2] = lower;
     --bodies.count;  // the upper side is the last one
   }
   return bodies;
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::set_motion(std::size_t node, BodyAtNode<Dim>& body) const {
+  body.v = body.before = velocity_at(node);
+  if constexpr (Split)
+    for (int d = 0; d < Dim; ++d) body.before[d] -= change_of(node, d);
+}
+
+// Both sides of one soil at a node that no weak soil reaches go on as one field.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::join_sides(std::size_t a, int n, const NodeSums* node,
+                                                             GridSums<Dim>& sums) {
+  NodeBodies bodies;
+  BodyAtNode<Dim> upper;
+  bodies.count = 1;
+  bodies.of_field[0] = bodies.of_field[2] = 0;
+  bodies.body[0].mass = node[0].sum[n][0];
+  upper.mass = node[2].sum[n][0];
+  bodies.body[0].volume = upper.volume = 1.0;
+  set_motion(node_of(0, a) + static_cast<std::size_t>(n), bodies.body[0]);
+  set_motion(node_of(2, a) + static_cast<std::size_t>(n), upper);
+  bodies.body[0].add(upper);
+  take_over(a, n, node, bodies, sums);
 }
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
@@ -81,11 +123,20 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::part_fields(std::size_t a, dou
   // A light layer between heavy bodies passes on little with each round.
   constexpr int most_rounds = 30;
   constexpr double little = 1e-6;
+  constexpr unsigned both_sides = 0b101;
   InterfaceNode surface[most_fields][block_nodes];
-  load_interfaces(a, surface);
+  bool loaded = false;
+  std::uint8_t* meeting = meeting_.data() + a * block_nodes;
   for (int n = 0; n < block_nodes; ++n) {
-    NodeBodies bodies = bodies_at(a, n, node, surface);
-    if (bodies.count == 0) continue;
+    const unsigned there = fields_at(a, n, node);
+    const bool several = (there & (there - 1U)) != 0, sides = options_.fields.by_side && there == both_sides;
+    const bool known = meeting[n] != 0;
+    meeting[n] = several && !sides ? 1 : 0;
+    if (sides) join_sides(a, n, node, sums);
+    if (!meeting[n] || !known) continue;
+    if (!loaded) load_interfaces(a, surface);
+    loaded = true;
+    NodeBodies bodies = bodies_at(a, n, there, node, surface);
     auto pairs = contact_pairs(bodies, dt);
     double first = 0.0, change = 0.0;
     for (int round = 0; round < most_rounds; ++round) {
@@ -120,26 +171,25 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::take_over(std::size_t a, int n
 }
 
 // Where one of two fields that touch rests on the ground it cannot give way, and passes on what presses it there. Both
-// contacts are taken in turn; each takes energy, so that what is left after the last round is harmless.
+// contacts are taken in turn; each takes energy, so that what is left after the last round is harmless. `met` as
+// meeting_ was at the step's start.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::settle_on_ground(std::size_t a, double dt, const NodeSums* node,
-                                                                   GridSums<Dim>& sums) {
+                                                                   const std::uint8_t* met, GridSums<Dim>& sums) {
   constexpr int most_rounds = 20;
   const NodeContact* contact = ground_.of_block(a);
   InterfaceNode surface[most_fields][block_nodes];
   bool loaded = false;
   for (int n = 0; n < block_nodes; ++n) {
-    if (contact[n].count == 0) continue;
-    int present = 0, resting = 0;
-    for (int f = 0; f < fields_.count(); ++f) {
-      if (!fields_.present(f, a) || node[f].sum[n][0] <= mass_cutoff_) continue;
-      ++present;
-      resting += grip_[node_of(f, a) + static_cast<std::size_t>(n)].pushed ? 1 : 0;
-    }
-    if (resting == 0 || present < 2) continue;
+    if (contact[n].count == 0 || !met[n] || !meeting_[a * block_nodes + static_cast<std::size_t>(n)]) continue;
+    const unsigned there = fields_at(a, n, node);
+    bool rest = false;
+    for (int f = 0; f < fields_.count(); ++f)
+      rest = rest || ((there >> f & 1U) && grip_[node_of(f, a) + static_cast<std::size_t>(n)].pushed);
+    if (!rest) continue;
     if (!loaded) load_interfaces(a, surface);
     loaded = true;
-    NodeBodies bodies = bodies_at(a, n, node, surface);
+    NodeBodies bodies = bodies_at(a, n, there, node, surface);
     if (bodies.count < 2) continue;
     std::array<bool, most_fields> rests{};
     std::array<double, most_fields> capacity{};

@@ -93,11 +93,15 @@ GridSums<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::move_block(std::size_
     else
       drive_nodes(f, a, drive, node[f], sums);
   }
-  if (fields_.shared(a)) part_fields(a, drive.dt, node, sums);
+  std::uint8_t met[block_nodes];
+  if (fields_.shared(a)) {
+    std::copy_n(meeting_.data() + a * block_nodes, block_nodes, met);
+    part_fields(a, drive.dt, node, sums);
+  }
   if (touched)
     for (int f = 0; f < fields_.count(); ++f)
       if (fields_.present(f, a)) touch_boundaries(f, a, drive, node[f], sums);
-  if (fields_.shared(a) && ground_.of_block(a)) settle_on_ground(a, drive.dt, node, sums);
+  if (fields_.shared(a) && ground_.of_block(a)) settle_on_ground(a, drive.dt, node, met, sums);
   if constexpr (Split)
     if (touched || fields_.shared(a)) {
       sums.impact = -sums.friction - sums.contact;

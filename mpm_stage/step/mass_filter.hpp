@@ -85,15 +85,6 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::filter_velocity(double dt) {
   add_time(seconds_.grid, since);
 }
 
-// Whether two fields meet at node n of active block a.
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-bool ExplicitSolver<Dim, Shape, Split, Transfer>::is_shared(std::size_t a, int n) const {
-  int there = 0;
-  for (int f = 0; f < fields_.count(); ++f)
-    if (fields_.present(f, a) && sums_[node_of(f, a) + static_cast<std::size_t>(n)][0] > mass_cutoff_) ++there;
-  return there > 1;
-}
-
 // The next term of field f's nodes in block a, (I - m^-1 M) times the one before.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::take_increment(int f, std::size_t a) {
@@ -103,7 +94,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::take_increment(int f, std::siz
   }
   if (fields_.shared(a))
     for (int n = 0; n < block_nodes; ++n)
-      if (is_shared(a, n)) term_[node_of(f, a) + static_cast<std::size_t>(n)] = Vec4{};
+      if (meeting_[a * block_nodes + static_cast<std::size_t>(n)])
+        term_[node_of(f, a) + static_cast<std::size_t>(n)] = Vec4{};
   for (const HeldNode& node : held_nodes_[fields_.number(f, a)]) {
     if (!node.held.any()) continue;
     const double m = sums_[node.node][0];

@@ -104,6 +104,7 @@ struct SolverState {
   std::vector<BodyState<Dim>> bodies;
   GripMemory<Dim> grip;
   std::vector<std::int32_t> removed, held;  // identities
+  std::vector<std::int32_t> meeting;        // by nodes of the active blocks; none with one velocity field
   std::vector<double> sleep_clocks;         // s, of each block; none when nothing may sleep
 };
 

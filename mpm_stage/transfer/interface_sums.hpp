@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "mpm_stage/boundary/soil_limit.hpp"
 #include "mpm_stage/grid/block_grid.hpp"
@@ -19,8 +20,8 @@
 namespace tailrun::mpm {
 
 struct InterfaceNode {
-  Vec4 first = {};   // m3, m4: V and V c
-  Vec4 second = {};  // m3 Pa, m2: V s and G
+  Vec4 first;   // m3, m4: V and V c
+  Vec4 second;  // m3 Pa, m2: V s and G
   InterfaceNode& operator+=(const InterfaceNode& o) {
     first += o.first;
     second += o.second;
@@ -28,10 +29,12 @@ struct InterfaceNode {
   }
 };
 
-// Adds the particles begin .. end, which are of one material, to the tile `node` with its node 0 at `corner` (m).
+// Adds the particles begin .. end, which are of one material, to the tile `node` with its node 0 at `corner` (m), but
+// for those whose first node is not `wanted`.
 template <int Dim, class Shape>
 void scatter_interface(const MaterialConstants& k, const Particles<Dim>& P, std::size_t begin, std::size_t end,
-                       const std::array<double, Dim>& corner, double h1, InterfaceNode* node) {
+                       const std::array<double, Dim>& corner, double h1, const std::uint8_t* wanted,
+                       InterfaceNode* node) {
   constexpr int S = Shape::support, T = Tile<Dim, Shape>::side;
   const double h = 1.0 / h1;
   for (std::size_t p = begin; p < end; ++p) {
@@ -39,6 +42,7 @@ void scatter_interface(const MaterialConstants& k, const Particles<Dim>& P, std:
     int at = 0;
     for (int a = 0, stride = 1; a < Dim; ++a, stride *= T)
       at += stride * Shape::evaluate((P.position[a][p] - corner[a]) * h1, w[a], d[a], m[a]);
+    if (!wanted[at]) continue;
     const double V = P.volume[p], s = V * interface_strength(k, P.strength[p], P.plastic_strain[p]);
     const Vec4 scale = {V, -V * h, -V * h, -V * h}, slope_scale = {s, V * h1, V * h1, V * h1};
     Vec4 first_x[S], second_x[S], first_y[S], second_y[S];
