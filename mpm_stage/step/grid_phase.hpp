@@ -121,8 +121,9 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::book_impacts(int f, std::size_
     if (m <= mass_cutoff_) continue;
     const std::size_t k = node_of(f, a) + static_cast<std::size_t>(n);
     for (int d = 0; d < Dim; ++d) {
-      double impulse = m * (velocity_[k][d] - drive.dt * (drive.body[d] + drive.inertial[d])) - node.sum[n][1 + d] -
-                       drive.dt * node.force[n][1 + d];
+      const double driven =
+          node.sum[n][1 + d] / m + drive.dt * node.force[n][1 + d] / m + drive.dt * (drive.body[d] + drive.inertial[d]);
+      double impulse = m * (velocity_[k][d] - driven);
       if (options_.local_damping > 0.0) impulse += damped_[k][d];
       sums.impact -= impulse * (velocity_[k][d] - 0.5 * change_of(k, d));
     }
