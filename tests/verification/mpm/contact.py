@@ -83,19 +83,26 @@ def turned(scene, angle):
 
 
 def contact_incline(r):
-    """A block of particles, 16 x 1 m, on a base of particles: g (sin b - mu cos b), or nothing below atan mu (19.3 deg); with tilted
-    gravity and with both turned against the grid, each at one angle with half the cell, too."""
+    """A block of particles, 16 x 1 m, on a base of particles: g (sin b - mu cos b), or nothing below atan mu (19.3 deg);
+    with tilted gravity and with both turned against the grid, each at one angle with half the cell, too. Both start with
+    the shear stress of an infinite slope: a shear that came all at once would overshoot, and a block that sticks slip."""
     rows, mu = [], 0.35
     for way in ("gravity tilted", "turned against the grid"):
         for angle, cell in [*((b, 0.25) for b in (0, 5, 10, 15, 19, 20, 25, 30, 35, 40, 45)), (30, 0.125)]:
             c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
             scene = r.scene()
             scene["grid"]["cell_size"] = cell
+            start = None
             if way == "gravity tilted":
                 scene["gravity"] = [G * s, -G * c]
+
+                def sheared(p, c=c, s=s):
+                    p["effective_stress"][:, 3] = 2000.0 * G * c * (1.0 - p["x"][:, 1]) * min(mu, s / c)
+
+                start = r.particles(scene, sheared)
             else:
                 turned(scene, angle)
-            run = r.run(scene, f"{way.split()[0]}_{angle}_{cell}")
+            run = r.run(scene, f"{way.split()[0]}_{angle}_{cell}", start)
             frames = all_frames(run)
             t, moved = times_of(frames), middle_of(frames, 0, "x") - middle_of(frames, 1, "x")
             along = moved[:, 0] if way == "gravity tilted" else c * moved[:, 0] - s * moved[:, 1]
