@@ -157,8 +157,33 @@ def passing():
         yield f"two particles, {name}", s
 
 
+def contact():
+    """Weak soil beside strong soil, a velocity field each: a block that slumps on a strong bed under a strong cap, and one
+    that runs against a strong block; in three dimensions both are two cells wide."""
+    strong = {"model": "linear_elastic", "density": 1900, "youngs_modulus": 5e7, "poisson_ratio": 0.3}
+    for dimension in (2, 3):
+        for transfer in ("apic", "aflip", "flip", "fmpm"):
+            for courant in (0.2, 0.5, 0.9):
+                for what in ("under a cap", "against a block"):
+                    s = scene(time__courant=courant, time__end=1.5 if dimension == 2 else 0.75, scheme__transfer=transfer)
+                    s["materials"]["strong"] = dict(strong)
+                    s["terrain"][0]["points"] = [[-100, -1], [100, -1]]
+                    bed = {"shape": "box", "low": [-2, -1], "high": [8, 0], "material": "strong",
+                           "stress": {"kind": "geostatic", "surface": 0, "k0": 0.43}}
+                    other = {"shape": "box", "low": [1, 2], "high": [3, 2.5], "material": "strong"}
+                    if what == "against a block":
+                        s["particles"][0]["velocity"] = [5] + [0] * (dimension - 1)
+                        other.update(low=[5, 0], high=[6, 1.5])
+                    s["particles"] += [bed, other]
+                    if dimension == 3:
+                        s["dimension"] = 3
+                        for box in s["particles"]:
+                            box["low"], box["high"] = [*box["low"], 0], [*box["high"], 0.5]
+                    yield f"{dimension}-D, {transfer}, dt factor {courant}, {what}", s
+
+
 AXES = [time_steps, points_per_cell, poisson_ratios, strengths, stiffness_contrasts, terrains, detached_particles, impacts, standing,
-        faster_than_sound, passing]
+        faster_than_sound, passing, contact]
 NAMES_PARTICLE = re.compile(r"t = \S+ s: particle \d+ of material '[^']+' at \([^)]+\) m")
 
 
