@@ -105,7 +105,10 @@ class ContactPair {
     mixed_ = distance < 0.02 * h;
     if (mixed_) return;
     for (double& x : n_) x /= distance;
-    if (i.firm != j.firm) take_normal_of(i.firm ? i.surface : j.surface, i.firm ? 1.0 : -1.0);
+    // Soil that flows opens and crowds, and its centre with it: soil that does not shows the surface better, of two
+    // such bodies the one that is more like a half-space (a corner of the other is none).
+    const bool of_i = i.firm && (!j.firm || flatness(i, half, h) >= flatness(j, half, h));
+    if (i.firm || j.firm) take_normal_of(of_i ? i.surface : j.surface, of_i ? 1.0 : -1.0);
     // Inside soil that flows, the node's velocity differs from that of the surface by what the soil strains in between;
     // what is there of the firm body is the rim of its reach, and must not be taken along.
     if (i.firm != j.firm) presses_ = std::fabs(along<Dim>(i.firm ? i.centre : j.centre, n_)) <= rim * h;
@@ -151,6 +154,14 @@ class ContactPair {
   }
 
  private:
+  // Its surface over that of a half-space with its share of the node: 1, less at corners and of thin plates.
+  template <class Shape>
+  static double flatness(const BodyAtNode<Dim>& body, const HalfSpaces<Shape>& half, double h) {
+    double cell = 1.0;
+    for (int d = 0; d < Dim; ++d) cell *= h;
+    const double slice = half.slice(body.volume / cell) * cell / h;
+    return slice > 0.0 ? std::sqrt(along<Dim>(body.surface, body.surface)) / slice : 0.0;
+  }
   void take_normal_of(const Vector& surface, double sign) {
     const double size = std::sqrt(along<Dim>(surface, surface));
     if (sign * along<Dim>(surface, n_) <= 0.5 * size) return;
@@ -160,13 +171,8 @@ class ContactPair {
   // particles show it best, unless it is a plate so thin that the node sees its other surface, too.
   template <class Shape>
   double surface_of_both(const HalfSpaces<Shape>& half, double h) const {
-    double cell = 1.0;
-    for (int d = 0; d < Dim; ++d) cell *= h;
     const double of_i = std::max(0.0, along<Dim>(i_->surface, n_)), of_j = std::max(0.0, -along<Dim>(j_->surface, n_));
-    if (i_->firm != j_->firm) {
-      const double firm = i_->firm ? of_i : of_j, volume = i_->firm ? i_->volume : j_->volume;
-      if (firm > 0.7 * half.slice(volume / cell) * cell / h) return firm;
-    }
+    if (i_->firm != j_->firm && flatness(i_->firm ? *i_ : *j_, half, h) > 0.7) return i_->firm ? of_i : of_j;
     return std::max(of_i, of_j);
   }
   // Body i loses `amount` times `direction` (N s) to body j.

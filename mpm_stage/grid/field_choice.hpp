@@ -19,9 +19,9 @@ struct FieldChoice {
   bool by_side = false;
   std::array<double, 3> up{0.0, 1.0, 0.0};
 
-  bool by_strength = false;  // field 1 flows, the others do not
+  std::vector<char> flows;  // of each field, whether any soil of it does (MaterialLaw::flows)
 
-  bool firm(int field) const { return by_strength && field != 1; }
+  bool firm(int field) const { return !flows[static_cast<std::size_t>(field)]; }
   bool several() const { return count > 1; }
   template <int Dim>
   int of(const Particles<Dim>& P, std::size_t p) const {

@@ -60,7 +60,6 @@ void read_contact(const CaseNode& root, Scene& scene) {
   const std::string kind = node.choice_or("fields", {"strength", "one", "named"}, "strength");
   if (kind == "strength") {
     fields.of_material = fields_by_strength(scene);
-    fields.by_strength = true;
     fields.by_side = node.boolean_or("sides", true) && !fields.of_material.empty();
     fields.count = fields.of_material.empty() ? 1 : (fields.by_side ? 3 : 2);
     const auto& g = scene.gravity;
@@ -73,6 +72,9 @@ void read_contact(const CaseNode& root, Scene& scene) {
     fields.count = count;
   }
   if (kind == "one") return;
+  fields.flows.assign(static_cast<std::size_t>(fields.count), 0);
+  for (std::size_t m = 0; m < fields.of_material.size(); ++m)
+    if (scene.materials[m].law->flows) fields.flows[static_cast<std::size_t>(fields.of_material[m])] = 1;
   if (const auto mu = node.number_if("friction", "1", Range::non_negative())) scene.solver.contact.friction = *mu;
   scene.solver.contact.opening =
       node.choice_or("opening", {"free", "held"}, "free") == "free" ? Opening::free : Opening::held;

@@ -284,6 +284,7 @@ class ExplicitSolver final : public Solver<Dim> {
   void scatter_interfaces(std::size_t b);
   void filter_velocity(double dt);
   void take_increment(int f, std::size_t a);
+  void share_increments();
   void find_held(int f, std::size_t a, double dt);
   void keep_contact(int f, std::size_t a);
   void gather(double dt, StepReport& report);

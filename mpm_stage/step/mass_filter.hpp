@@ -5,7 +5,7 @@
 //
 // Nodes that walls, ground or bodies hold: v(1) is what contact has made of it, and each further term loses its part
 // along the held directions (held_directions.hpp), so the series inverts the mass matrix of the free directions.
-// Where velocity fields meet, all directions are held: what contact between them has settled must stay so.
+// Where velocity fields meet they share each term: what contact between them has settled must stay so.
 // Mirrors and continued surface nodes treat M v like any other momentum.
 //
 // The time step: with mu in [0, 1] an eigenvalue of m^-1 M, the filter multiplies accelerations by
@@ -60,6 +60,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::filter_velocity(double dt) {
       if (extension_.active()) extension_.fold_force(sums_.data() + node_of(f, 0), products_.data() + node_of(f, 0));
     }
     for_each_block([&](int f, std::size_t a) { take_increment(f, a); });
+    if (fields_.several()) share_increments();
     for (const auto& [k, b] : nodes_in_bodies_) {
       for (int d = 0; d < Dim; ++d) {
         const double taken = -sums_[k][0] * term_[k][d];
@@ -85,6 +86,30 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::filter_velocity(double dt) {
   add_time(seconds_.grid, since);
 }
 
+// Where fields meet they get the term of both together: momentum is kept, and what contact has made of the difference
+// of their velocities, too.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::share_increments() {
+#pragma omp parallel for schedule(dynamic, 4)
+  for (std::size_t a = 0; a < grid_.active(); ++a) {
+    if (!fields_.shared(a)) continue;
+    for (int n = 0; n < block_nodes; ++n) {
+      Vec4 momentum = {};
+      double mass = 0.0;
+      for (int f = 0; f < fields_.count(); ++f) {
+        if (!fields_.present(f, a)) continue;
+        const std::size_t k = node_of(f, a) + static_cast<std::size_t>(n);
+        momentum += term_[k] * splat(sums_[k][0]);
+        mass += sums_[k][0];
+      }
+      if (mass <= mass_cutoff_) continue;
+      for (int f = 0; f < fields_.count(); ++f)
+        if (fields_.present(f, a) && sums_[node_of(f, a) + static_cast<std::size_t>(n)][0] > mass_cutoff_)
+          term_[node_of(f, a) + static_cast<std::size_t>(n)] = momentum * splat(1.0 / mass);
+    }
+  }
+}
+
 // The next term of field f's nodes in block a, (I - m^-1 M) times the one before.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::take_increment(int f, std::size_t a) {
@@ -92,10 +117,6 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::take_increment(int f, std::siz
     const double m = sums_[k][0];
     term_[k] = m > mass_cutoff_ ? term_[k] - as_velocity<Dim>(products_[k]) * splat(1.0 / m) : Vec4{};
   }
-  if (fields_.shared(a))
-    for (int n = 0; n < block_nodes; ++n)
-      if (meeting_[a * block_nodes + static_cast<std::size_t>(n)])
-        term_[node_of(f, a) + static_cast<std::size_t>(n)] = Vec4{};
   for (const HeldNode& node : held_nodes_[fields_.number(f, a)]) {
     if (!node.held.any()) continue;
     const double m = sums_[node.node][0];
