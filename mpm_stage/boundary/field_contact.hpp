@@ -150,7 +150,7 @@ class ContactPair {
     if (law_.friction >= 0.0) most = std::min(cohesive_, law_.friction * std::max(0.0, normal_));
     const double impulse = std::min(reduced_ * speed, most);
     push(slide, impulse / speed);
-    return impulse * (speed - impulse / reduced_);
+    return impulse * std::max(0.0, speed - impulse / reduced_);
   }
 
  private:

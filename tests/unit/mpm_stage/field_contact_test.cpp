@@ -1,0 +1,173 @@
+#include "mpm_stage/boundary/field_contact.hpp"
+
+#include <doctest/doctest.h>
+#include <omp.h>
+
+#include <random>
+
+#include "mpm_stage/grid/field_sides.hpp"
+#include "mpm_stage/grid/shape_functions.hpp"
+#include "mpm_stage/step/solver.hpp"
+
+using namespace tailrun::mpm;
+
+namespace {
+
+constexpr double h = 0.5, dt = 1e-3;
+const HalfSpaces<QuadraticShape> half;
+
+// Two half-spaces that meet in the plane x = 0 through the node.
+BodyAtNode<2> side(double sign, double mass, std::array<double, 2> v, double strength) {
+  BodyAtNode<2> body;
+  body.mass = mass;
+  body.v = body.before = v;
+  body.volume = 0.5 * h * h;
+  body.centre = {0.5 * sign * h * half.centres_apart(0.5), 0.0};
+  body.surface = {-sign * h * half.slice(0.5), 0.0};
+  body.strength = strength;
+  return body;
+}
+
+double energy(const BodyAtNode<2>& b) {
+  return 0.5 * b.mass * (b.v[0] * b.v[0] + b.v[1] * b.v[1]);
+}
+
+}  // namespace
+
+TEST_CASE("half-spaces: centres, offset and slice are those of the quadratic B-spline") {
+  CHECK(half.centres_apart(0.5) == doctest::Approx(0.8125).epsilon(1e-3));
+  CHECK(half.slice(0.5) == doctest::Approx(0.75).epsilon(1e-3));
+  CHECK(half.offset(0.5) == doctest::Approx(0.0).epsilon(1e-3));
+  // The plane at half a cell: 1 / 6 of the weight lies beyond.
+  CHECK(half.offset(1.0 / 6.0) == doctest::Approx(-0.5).epsilon(0.01));
+  CHECK(half.offset(5.0 / 6.0) == doctest::Approx(0.5).epsilon(0.01));
+}
+
+TEST_CASE("contact between two fields keeps momentum and takes energy, whatever meets") {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> some(-1.0, 1.0), mass(1e-3, 10.0);
+  for (int k = 0; k < 1000; ++k) {
+    auto i = side(-1.0, mass(random), {some(random), some(random)}, 1e4 * (1.0 + some(random)));
+    auto j = side(1.0, mass(random), {some(random), some(random)}, no_soil_limit);
+    i.centre[1] = 0.2 * h * some(random);
+    i.firm = k % 3 == 0;
+    j.firm = k % 2 == 0;
+    const FieldContactLaw law{k % 5 == 0 ? 0.4 : -1.0, k % 7 == 0 ? Opening::held : Opening::free};
+    const std::array<double, 2> before = {i.mass * i.v[0] + j.mass * j.v[0], i.mass * i.v[1] + j.mass * j.v[1]};
+    const double start = energy(i) + energy(j);
+    ContactPair<2> pair(i, j, law, h, dt, half);
+    pair.press();
+    const double pressed = energy(i) + energy(j);
+    CHECK(pressed <= start * (1.0 + 1e-14));
+    const double work = pair.rub();
+    CHECK(work >= 0.0);
+    CHECK(energy(i) + energy(j) <= pressed - work + 1e-14 * start);
+    for (int d = 0; d < 2; ++d) CHECK(i.mass * i.v[d] + j.mass * j.v[d] == doctest::Approx(before[d]).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("phi = 0 soil brakes by its strength times the surface, and not at all across a gap") {
+  const double strength = 5e3, area = h * half.slice(0.5);
+  auto weak = side(-1.0, 1e3, {0.0, 1.0}, strength), strong = side(1.0, 1e9, {0.0, 0.0}, no_soil_limit);
+  strong.firm = true;
+  ContactPair<2> pair(weak, strong, {}, h, dt, half);
+  pair.press();
+  pair.rub();
+  CHECK(weak.v[1] == doctest::Approx(1.0 - dt * strength * area / 1e3).epsilon(1e-6));
+
+  auto apart = side(-1.0, 1e3, {0.1, 1.0}, strength);
+  apart.centre[0] -= 0.5 * h;
+  ContactPair<2> open(apart, strong, {}, h, dt, half);
+  open.press();
+  open.rub();
+  CHECK(apart.v[0] == 0.1);
+  CHECK(apart.v[1] == 1.0);
+}
+
+TEST_CASE("strong soil above weak soil is the upper side, that beneath it is not") {
+  // Layers of one particle a row: strong, strong, weak, strong, strong; and far above strong soil again.
+  Particles<2> P;
+  const std::vector<double> heights = {0.35, 0.85, 1.35, 1.85, 2.35, 7.85};
+  const std::vector<int> materials = {0, 0, 1, 0, 0, 0}, wanted = {0, 0, 0, 1, 1, 0};
+  P.resize(heights.size() * 8, false, false);
+  P.side.assign(P.count(), 0);
+  for (std::size_t p = 0; p < P.count(); ++p) {
+    P.position[0][p] = 0.25 + 0.5 * static_cast<double>(p % 8);
+    P.position[1][p] = heights[p / 8];
+    P.volume[p] = 0.25;
+    P.mass[p] = 500.0;
+    P.material[p] = materials[p / 8];
+    P.identity[p] = static_cast<std::int32_t>(p);
+  }
+  FieldChoice fields;
+  fields.of_material = {0, 1};
+  fields.count = 3;
+  fields.by_side = true;
+  BlockGrid<2> grid(h, {}, QuadraticShape::shift);
+  grid.sort(P, {}, fields);
+  const auto corner = [&](std::size_t b) {
+    std::array<double, 2> c;
+    for (int d = 0; d < 2; ++d) c[d] = (grid.occupied_index(b)[d] * Block<2>::cells + Tile<2, QuadraticShape>::low) * h;
+    return c;
+  };
+  CHECK(find_sides<2, QuadraticShape>(grid, fields, corner, P));
+  for (std::size_t p = 0; p < P.count(); ++p) CHECK(P.side[p] == wanted[static_cast<std::size_t>(P.identity[p]) / 8]);
+  CHECK_FALSE(find_sides<2, QuadraticShape>(grid, fields, corner, P));
+}
+
+TEST_CASE("weak soil that slides on strong soil: momentum is exact, and bits do not depend on the threads") {
+  for (const TransferName transfer :
+       {TransferName::apic, TransferName::aflip, TransferName::flip, TransferName::fmpm}) {
+    CAPTURE(static_cast<int>(transfer));
+    std::vector<Material> materials(2);
+    materials[0].name = "strong";
+    materials[1].name = "weak";
+    materials[1].law = &law_named("tresca");
+    for (Material& m : materials) {
+      m.youngs_modulus = 1e6;
+      m.poisson_ratio = 0.3;
+    }
+    const Terrain none;
+    SolverOptions o;
+    o.transfer = transfer;
+    o.fields.of_material = {0, 1};
+    o.fields.count = 3;
+    o.fields.by_side = true;
+    o.fields.flows = {0, 1, 0};
+    std::array<AlignedVector<double>, 2> x;
+    for (int t = 0; t < 2; ++t) {
+      Particles<2> P;
+      P.resize(48 * 30, transfer == TransferName::apic || transfer == TransferName::aflip, false);
+      P.side.assign(P.count(), 0);
+      for (std::size_t p = 0; p < P.count(); ++p) {
+        const std::size_t row = p / 48;
+        P.position[0][p] = 0.25 * (static_cast<double>(p % 48) + 0.5);
+        P.position[1][p] = 0.25 * (static_cast<double>(row) + 0.5);
+        P.volume[p] = 0.0625;
+        P.mass[p] = 125.0;
+        P.material[p] = row >= 10 && row < 14 ? 1 : 0;
+        P.strength[p] = 2e3;
+        P.velocity[0][p] = row >= 14 ? 1.0 : 0.0;
+        P.velocity[1][p] = row >= 14 ? -0.2 : 0.1;
+        P.identity[p] = static_cast<std::int32_t>(p);
+      }
+      const int threads = omp_get_max_threads();
+      omp_set_num_threads(t + 1);
+      auto solver = make_solver<2>(o, h, {}, std::move(P), materials, none, Walls<2>{});
+      solver->start(1e300);
+      for (int s = 0; s < 60; ++s) solver->step({}, {}, 1e300);
+      omp_set_num_threads(threads);
+      const Particles<2>& Q = solver->particles();
+      double px = 0.0, py = 0.0;
+      for (std::size_t p = 0; p < Q.count(); ++p) {
+        px += Q.mass[p] * Q.velocity[0][p];
+        py += Q.mass[p] * Q.velocity[1][p];
+      }
+      CHECK(px == doctest::Approx(16 * 48 * 125.0).epsilon(1e-12));
+      CHECK(py == doctest::Approx((14 * 0.1 - 16 * 0.2) * 48 * 125.0).epsilon(1e-11));
+      CHECK(solver->work().contact > 0.0);
+      x[static_cast<std::size_t>(t)] = Q.position[0];
+    }
+    CHECK(x[0] == x[1]);
+  }
+}
