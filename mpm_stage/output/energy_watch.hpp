@@ -17,6 +17,12 @@ class EnergyWatch {
  public:
   static constexpr int steps = 32;
 
+  // J, what motion holds and has done.
+  static double spent(const StepReport& report, const WorkDone& w) {
+    return report.kinetic_energy + w.plastic + w.friction + w.contact + w.damping + w.removed - w.external -
+           w.pore_pressure;
+  }
+
   // After `row`, measured after the step `report`: `weight` is |g| sqrt(M), `growth` what energy may grow by, J.
   void looked(const StepReport& report, const LedgerRow& row, double weight, double growth) {
     since_ = 0;
@@ -30,10 +36,6 @@ class EnergyWatch {
   }
 
  private:
-  static double spent(const StepReport& report, const WorkDone& w) {
-    return report.kinetic_energy + w.plastic + w.friction + w.damping + w.removed - w.external - w.pore_pressure;
-  }
-
   double weight_ = 0.0, allowed_ = 0.0;
   int since_ = 0;
 };

@@ -72,7 +72,7 @@ LedgerRow Ledger<Dim>::measure(double time, Solver<Dim>& solver) const {
 template <int Dim>
 void Ledger<Dim>::check(const LedgerRow& now, double scale, const Solver<Dim>& solver, double limit) const {
   const double start = rows_.empty() ? now.total() : rows_.front().total();
-  if (std::isfinite(now.total()) && !(now.lost < -limit * scale - 1e-9 * std::fabs(start))) return;
+  if (std::isfinite(now.total()) && !(now.lost - 0.5 * gain_ < -limit * scale - 1e-9 * std::fabs(start))) return;
   throw ComputationError(fmt::format(
       "{}, the most of all per mass: energy has grown without work that explains it, by {:.4g} J of {:.4g} J turned "
       "over (limit {} of it); {}",

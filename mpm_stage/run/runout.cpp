@@ -204,6 +204,7 @@ class Runout {
       record_.dt_min = std::min(record_.dt_min, report.dt);
       record_.dt_max = std::max(record_.dt_max, report.dt);
       record_.largest_kinetic = std::max(record_.largest_kinetic, report.kinetic_energy);
+      ledger_.follow(EnergyWatch::spent(report, solver_->work()));
       if (!series_due && watch_.due(report, solver_->work()))
         looked(ledger_.look(record_.time, *solver_, scene_.energy_growth_limit), report);
       if ((series_due || frame_due) && record_event(report, series_due, frame_due, shaking_end, progress)) return;
