@@ -38,6 +38,7 @@ namespace {
 
 struct Arguments {
   std::string case_file, size, folder = ".", mesh, geostatic, from;
+  bool trust_geometry = false;
 };
 
 fs::path mesh_path(const Arguments& arguments) {
@@ -54,7 +55,8 @@ void make_mesh(const Arguments& arguments) {
   fs::create_directories(arguments.folder);
   Mesh mesh;
   if (!options.mesh.geometry.empty()) {
-    mesh = mesh_geometry(options.mesh.geometry, options.mesh.parameters, output);
+    mesh = mesh_geometry(options.mesh.geometry,
+                         {options.mesh.parameters, options.mesh.time_limit, arguments.trust_geometry}, output);
   } else if (options.mesh.rectangle) {
     write_rectangle_mesh(*options.mesh.rectangle, output);
     mesh = read_gmsh(output);
@@ -114,6 +116,7 @@ void make_shake(const Arguments& arguments, bool echo) {
   MaterialPoints points = make_material_points(model);
   State state;
   read_state(start, model, state, points);
+  check_shake_output(options, static_cast<double>(fs::file_size(start)), arguments.folder);
   if (!arguments.from.empty()) check_restart(arguments, options, state, true);
   const ShakeReport report = run_shake(model, points, state, motion, arguments.folder);
   const auto summary = shake_summary(model, motion, report);
@@ -166,7 +169,12 @@ int main(int argc, char** argv) {
     command->add_option("--size", arguments.size, "Entry of /mesh/sizes in the case (coarse, default, fine)");
     return command;
   };
-  add_stage("mesh", "Geometry to mesh.msh")->callback([&] { make_mesh(arguments); });
+  const auto let_trust = [&](CLI::App* command) {
+    command->add_flag("--trust-geometry", arguments.trust_geometry,
+                      "Let the geometry start programs and write files (SystemCall, Save ...)");
+    return command;
+  };
+  let_trust(add_stage("mesh", "Geometry to mesh.msh"))->callback([&] { make_mesh(arguments); });
 
   CLI::App* geostatic = add_stage("geostatic", "Gravity and water to geostatic.h5");
   geostatic->add_option("--mesh", arguments.mesh, "Mesh file (default: mesh.msh in the results' folder)");
@@ -184,7 +192,7 @@ int main(int argc, char** argv) {
   consolidate->add_option("--from", arguments.from, "State after the shaking (snapshot_t*.h5)")->required();
   consolidate->callback([&] { make_consolidation(arguments); });
 
-  add_stage("run", "mesh, geostatic and shake")->callback([&] {
+  let_trust(add_stage("run", "mesh, geostatic and shake"))->callback([&] {
     make_mesh(arguments);
     make_geostatic(arguments);
     make_shake(arguments, false);

@@ -30,7 +30,7 @@ struct Mesh {
 };
 
 // Turns clockwise quadrilaterals round, and throws InputError (exit 1) for what no analysis can use: no elements,
-// degenerate or non-convex elements, nodes in no element, edges shared by more than two elements, and boundary edges
+// degenerate or non-convex elements, the same element twice, nodes in no element, edges shared by more than two elements, and boundary edges
 // that belong to no named line (a hole: a surface that was left out of the physical groups). `source` names the mesh
 // file.
 void check_mesh(Mesh& mesh, const std::string& source);
