@@ -48,6 +48,18 @@ fs::path geostatic_path(const Arguments& arguments) {
   return arguments.geostatic.empty() ? fs::path(arguments.folder) / "geostatic.h5" : fs::path(arguments.geostatic);
 }
 
+// What is wrong with the model is said with a pointer into the case; here the case's name comes before it.
+Model model_of(const Arguments& arguments, const FemCase& options) {
+  try {
+    return build_model(options, mesh_path(arguments));
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    for (const char* root : {"/boundaries", "/regions", "/loads", "/output", "/above_phreatic_line"})
+      if (text.rfind(root, 0) == 0) throw InputError(arguments.case_file + ": " + text);
+    throw;
+  }
+}
+
 // Geometry -> mesh.msh, or a copy of the case's own mesh file, with a report on its quality.
 void make_mesh(const Arguments& arguments) {
   const FemCase options = read_fem_case(arguments.case_file, arguments.size);
@@ -77,7 +89,7 @@ void make_geostatic(const Arguments& arguments) {
   FemCase options = read_fem_case(arguments.case_file, arguments.size);
   echo_options(arguments.case_file, options.echo);
   options.provenance.add_file(mesh_path(arguments));
-  const Model model = build_model(options, mesh_path(arguments));
+  const Model model = model_of(arguments, options);
   MaterialPoints points = make_material_points(model);
   State state;
   const GeostaticReport report = run_geostatic(model, points, state);
@@ -112,7 +124,7 @@ void make_shake(const Arguments& arguments, bool echo) {
   if (!options.shake.motion.empty()) options.provenance.add_file(options.shake.motion);
   const fs::path start = arguments.from.empty() ? geostatic_path(arguments) : fs::path(arguments.from);
   options.provenance.add_file(start);
-  const Model model = build_model(options, mesh_path(arguments));
+  const Model model = model_of(arguments, options);
   MaterialPoints points = make_material_points(model);
   State state;
   read_state(start, model, state, points);
@@ -138,7 +150,7 @@ void make_consolidation(const Arguments& arguments) {
   echo_options(arguments.case_file, options.echo);
   options.provenance.add_file(mesh_path(arguments));
   options.provenance.add_file(arguments.from);
-  const Model model = build_model(options, mesh_path(arguments));
+  const Model model = model_of(arguments, options);
   MaterialPoints points = make_material_points(model);
   State state;
   read_state(arguments.from, model, state, points);
@@ -193,6 +205,7 @@ int main(int argc, char** argv) {
   consolidate->callback([&] { make_consolidation(arguments); });
 
   let_trust(add_stage("run", "mesh, geostatic and shake"))->callback([&] {
+    case_motion(read_fem_case(arguments.case_file, arguments.size));  // wrong? Then say so before computing
     make_mesh(arguments);
     make_geostatic(arguments);
     make_shake(arguments, false);

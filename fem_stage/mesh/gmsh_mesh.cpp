@@ -110,8 +110,10 @@ class RegionOf {
     if (groups_.size() != 1 && (groups_.empty() || !groups.known))
       throw InputError(fmt::format(
           "{}: surface {} is in {} physical surfaces, but every meshed surface must be in exactly one (it names the "
-          "region)",
-          source, surface, groups_.size()));
+          "region){}",
+          source, surface, groups_.size(),
+          groups_.empty() && groups.known ? "; 'Save all elements' loses the groups in format 2: save without it, or as 4.1"
+                                          : ""));
   }
   int group(const std::size_t* nodes) const {
     if (groups_.size() == 1) return groups_.front();
@@ -137,6 +139,19 @@ class RegionOf {
   const MshGroups& given_;
   std::vector<int> groups_;
 };
+
+// A mesh of several partitions may lie in as many files; one of them alone is a part of the dam.
+void check_partitions(const std::string& source, const gmsh::vectorpair& surfaces, int partitions) {
+  std::set<int> present;
+  for (const auto& [dimension, tag] : surfaces) {
+    std::vector<int> own;
+    gmsh::model::getPartitions(dimension, tag, own);
+    present.insert(own.begin(), own.end());
+  }
+  if (partitions > 1 && static_cast<int>(present.size()) < partitions)
+    throw InputError(
+        fmt::format("{}: the file holds {} of the mesh's {} partitions", source, present.size(), partitions));
+}
 
 // The plane of the mesh is z = constant; another one would be projected, and come out narrower or as a line.
 void check_plane(const std::vector<double>& points, const std::string& source) {
@@ -208,6 +223,7 @@ Mesh mesh_of_current_model(const std::string& source, const MshGroups& given) {
   Mesh mesh;
   gmsh::vectorpair surfaces;
   gmsh::model::getEntities(surfaces, 2);
+  check_partitions(source, surfaces, given.partitions);
   std::map<std::size_t, std::int64_t> number;  // of a node tag
   std::vector<std::size_t> quad_tags;
   std::map<int, std::int32_t> region_of_group;
@@ -303,16 +319,23 @@ Mesh read_gmsh(const std::filesystem::path& path, const std::string& source) {
   IsolationLimits limits;
   limits.seconds = reading_time_limit;
   limits.memory = (std::size_t{1} << 31) + 500 * static_cast<std::size_t>(std::filesystem::file_size(path));
-  const std::string bytes = run_isolated(source, limits, [&] {
-    const Session session;
-    forget_warnings();
-    open_or_throw(path);
-    return bytes_of(mesh_of_current_model(source, groups), warnings());
-  });
-  auto [mesh, remarks] = mesh_of_bytes(bytes);
-  for (const auto& remark : remarks) add_warning(remark);
-  check_mesh(mesh, source);
-  return std::move(mesh);
+  try {
+    const std::string bytes = run_isolated(source, limits, [&] {
+      const Session session;
+      forget_warnings();
+      open_or_throw(path);
+      return bytes_of(mesh_of_current_model(source, groups), warnings());
+    });
+    auto [mesh, remarks] = mesh_of_bytes(bytes);
+    for (const auto& remark : remarks) add_warning(remark);
+    check_mesh(mesh, source);
+    return std::move(mesh);
+  } catch (const InputError& error) {
+    if (!groups.partitioned) throw;
+    throw InputError(fmt::format("{}. The mesh is cut into partitions, of which this file may have one, or ghost cells of the "
+                                 "others: in gmsh, Mesh > Unpartition, and save it whole",
+                                 error.what()));
+  }
 }
 
 Mesh read_gmsh(const std::filesystem::path& path) {

@@ -191,7 +191,7 @@ class Audit {
     for (std::int64_t k = 0; k < tags; ++k) {
       const auto tag = in_.integer("a tag of an element");
       if (k == 0) group = std::abs(tag);
-      if (k == 3 && std::abs(tag) > 1) partitioned(in_);
+      if (k == 3) groups.partitioned = true;  // even of one partition: the file may hold one of several
     }
     std::int64_t node[4] = {};
     for (int k = 0; k < nodes; ++k) {
@@ -218,12 +218,6 @@ class Audit {
     if (!in_.at_end()) in_.fail("more follows than the section's head announces");
   }
 
- public:
-  [[noreturn]] static void partitioned(const Reader& in) {
-    in.fail("the mesh is cut into partitions, and fem_stage takes whole meshes only: in gmsh, Mesh > Unpartition (or "
-            "gmsh::model::mesh::unpartition()), and save it again");
-  }
-
  private:
   Reader& in_;
   bool two_, four_zero_;
@@ -238,12 +232,20 @@ MshGroups audit_msh(const std::filesystem::path& path, const std::string& source
   std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (text.rfind("\xEF\xBB\xBF", 0) == 0) text.erase(0, 3);
   Reader in(source, text);
-  if (in.at_end() || text[in.at()] != '$')
+  if (in.at_end()) in.fail("the file is empty");
+  if (text[in.at()] != '$')
     in.fail("this is no gmsh mesh (it does not begin with $MeshFormat); a geometry goes to /mesh/geometry, other formats "
             "can be saved as .msh by gmsh");
   double version = 0.0;
   std::size_t parts = 0;
-  MshGroups groups;
+  MshGroups unseen;
+  if (const auto at = text.find("\n$PartitionedEntities"); at != std::string::npos) {
+    unseen.partitioned = true;
+    const auto head = text.find_first_of("\n", at + 1);
+    if (std::from_chars(text.data() + std::min(head + 1, text.size()), text.data() + text.size(), unseen.partitions).ec !=
+        std::errc())
+      unseen.partitions = 0;
+  }
   std::optional<Audit> audit;
   while (!in.at_end()) {
     in.section.clear();
@@ -259,13 +261,11 @@ MshGroups audit_msh(const std::filesystem::path& path, const std::string& source
     if (name == "MeshFormat") {
       const auto word = in.word();
       std::from_chars(word.data(), word.data() + word.size(), version);
-      if (in.integer("the file type") != 0) return {};  // binary
-      if (!((version >= 2.0 && version < 3.0) || (version >= 4.0 && version < 4.2))) return {};
+      if (in.integer("the file type") != 0) return unseen;  // binary
+      if (!((version >= 2.0 && version < 3.0) || (version >= 4.0 && version < 4.2))) return unseen;
       audit.emplace(in, version);
     } else if (!audit) {
-      return {};  // version 1 has no $MeshFormat
-    } else if (name == "PartitionedEntities") {
-      if (in.count("the number of partitions", largest_tag) > 0) Audit::partitioned(in);
+      return unseen;  // version 1 has no $MeshFormat
     } else if (name == "Nodes") {
       audit->nodes();
       ++parts;
@@ -278,6 +278,8 @@ MshGroups audit_msh(const std::filesystem::path& path, const std::string& source
     in.rest_of_line();
   }
   if (parts != 2) in.fail("one $Nodes and one $Elements are required");
+  audit->groups.partitioned |= unseen.partitioned;
+  audit->groups.partitions = unseen.partitions;
   return std::move(audit->groups);
 }
 

@@ -48,7 +48,7 @@ Sides free_field_sides(const Mesh& mesh, const BoundaryOptions& boundaries) {
 
 }  // namespace
 
-void check_joints(const Mesh& mesh, const BoundaryOptions& boundaries) {
+void check_joints(const Mesh& mesh, const BoundaryOptions& boundaries, const std::string& source) {
   const auto side = shortest_sides(mesh);
   const Sides free_field = free_field_sides(mesh, boundaries);
   const double widest = share_of_side * *std::max_element(side.begin(), side.end());
@@ -73,10 +73,10 @@ void check_joints(const Mesh& mesh, const BoundaryOptions& boundaries) {
     }
   if (pairs > 0)
     throw InputError(fmt::format(
-        "the mesh is cut: {} pairs of nodes lie in one place (up to {:.2g} m apart) and belong to different elements, for "
+        "{}: the mesh is cut: {} pairs of nodes lie in one place (up to {:.2g} m apart) and belong to different elements, for "
         "instance nodes {} and {} at ({:.4g}, {:.4g}). Parts that are to move together must share their nodes: one curve "
         "for both sides in the geometry (Coherence), or merge the nodes (Coherence Mesh)",
-        pairs, largest_gap, first, second, mesh.x(first), mesh.y(first)));
+        source, pairs, largest_gap, first, second, mesh.x(first), mesh.y(first)));
 }
 
 }  // namespace tailrun::fem

@@ -8,7 +8,7 @@
 namespace tailrun::fem {
 
 // Throws InputError for nodes in one place (nearer than a hundredth of the sides around them) that no element joins. A
-// free-field column may stand flush with the side that it belongs to.
-void check_joints(const Mesh& mesh, const BoundaryOptions& boundaries);
+// free-field column may stand flush with the side that it belongs to. `source` names the mesh file.
+void check_joints(const Mesh& mesh, const BoundaryOptions& boundaries, const std::string& source);
 
 }  // namespace tailrun::fem

@@ -154,7 +154,7 @@ Model build_model(const FemCase& options, const std::filesystem::path& mesh_file
   model.mesh = read_gmsh(mesh_file);
   Mesh& mesh = model.mesh;
   check_regions(options, mesh);
-  check_joints(mesh, options.boundaries);
+  check_joints(mesh, options.boundaries, mesh_file.string());
   check_output_places(mesh, options);
   if (!options.phreatic_line.empty() && options.mesh.snap_to_phreatic_line > 0.0)
     spdlog::info("{} nodes moved onto the phreatic line",
