@@ -27,13 +27,14 @@ struct Motion {
 // PEER AT2. The line with the count and the time step is found by its form ("NPTS=  1559, DT= .02000 SEC",
 // "4164    0.0100    NPTS, DT"; the step in s or ms) after three or more lines of text, which may say the unit ("UNITS
 // OF G", "CM/SEC**2" ...); without one the values are in g (9.81 m/s2, as the reference data use). Exponents may be
-// Fortran's D, columns may be glued, line ends "\r\r\n". A count that disagrees is an error when values are missing and a
-// warning when there are more. Throws InputError: another unit, velocities, displacements.
+// Fortran's D, columns may be glued, line ends "\r\r\n". A count that disagrees is an error when values are missing and
+// a warning when there are more. Throws InputError: another unit, velocities, displacements.
 Motion read_at2(const std::filesystem::path& path);
 
-// Two columns, time and acceleration, separated by commas, semicolons, tabs or blanks, after header or comment lines. Names of
-// the columns may say the unit ("time [ms]", "a_cm_s2", "acc (g)"); s and m/s2 without. The time step must be uniform; a
-// start other than 0 is moved there, with a warning. Throws InputError: empty values, more columns, other units.
+// Two columns, time and acceleration, separated by commas, semicolons, tabs or blanks, after header or comment lines.
+// Names of the columns may say the unit ("time [ms]", "a_cm_s2", "acc (g)"); s and m/s2 without. The time step must be
+// uniform; a start other than 0 is moved there, with a warning. Throws InputError: empty values, more columns, other
+// units.
 Motion read_motion_csv(const std::filesystem::path& path);
 
 // By extension (.AT2/.at2 or .csv/.txt). Throws InputError.
@@ -42,11 +43,12 @@ Motion read_motion(const std::filesystem::path& path);
 // Scaled so that the peak acceleration is `peak` (m/s2).
 Motion scaled_to_peak(Motion motion, double peak);
 
-// Warnings (common/warnings.hpp) about what can be computed but is hardly meant: a peak that looks like g or a factor, a
-// baseline that drifts, a step of the computation (s) longer than the record's. `recorded_peak` m/s2, before scaling.
+// Warnings (common/warnings.hpp) about what can be computed but is hardly meant: a peak that looks like g or a factor,
+// a baseline that drifts, a step of the computation (s) longer than the record's. `recorded_peak` m/s2, before scaling.
 void warn_about_motion(const Motion& motion, double recorded_peak, double step, double duration);
 
-// A run that begins `start` seconds into the record: warns when the record, or nearly all of its shaking, is over by then.
+// A run that begins `start` seconds into the record: warns when the record, or nearly all of its shaking, is over by
+// then.
 void warn_about_late_start(const Motion& motion, double start);
 
 }  // namespace tailrun

@@ -132,8 +132,7 @@ std::vector<std::string> cells_of(const Path& path, std::size_t line, const std:
       const auto next = text.find(separator, at);
       std::string cell = text.substr(at, next - at);
       const auto first = cell.find_first_not_of(" \t\"");
-      cells.push_back(first == std::string::npos ? ""
-                                                 : cell.substr(first, cell.find_last_not_of(" \t\"") - first + 1));
+      cells.push_back(first == std::string::npos ? "" : cell.substr(first, cell.find_last_not_of(" \t\"") - first + 1));
       if (next == std::string::npos) break;
       at = next + 1;
     }
@@ -207,8 +206,7 @@ Motion read_at2(const Path& path) {
   std::size_t i = counts->line + 1;
   for (; i < lines.size() && i < counts->line + 6 && !begins_like_number(lines[i]); ++i) header.push_back(i);
   const auto stated = stated_factor(path, lines, header);
-  if (!stated)
-    add_warning(fmt::format("{}: no line above the values says their unit; g is taken", path.string()));
+  if (!stated) add_warning(fmt::format("{}: no line above the values says their unit; g is taken", path.string()));
   const double factor = stated.value_or(standard_gravity);
   for (; i < lines.size(); ++i) {
     std::string_view bad;
@@ -225,8 +223,8 @@ Motion read_at2(const Path& path) {
     motion.acceleration.resize(counts->values);
   }
   if (motion.acceleration.size() < 2)
-    throw InputError(fmt::format("{}: has {} values, but at least two are required", path.string(),
-                                 motion.acceleration.size()));
+    throw InputError(
+        fmt::format("{}: has {} values, but at least two are required", path.string(), motion.acceleration.size()));
   motion.integrate();
   return motion;
 }
@@ -253,8 +251,7 @@ Motion read_motion_csv(const Path& path) {
       if (k >= cells.size() || cells[k].empty())
         fail(path, i, fmt::format("'{}' has no {}", shown(lines[i]), k == 0 ? "time" : "acceleration"));
     const auto time = number_of(cells[0]), acceleration = number_of(cells[1]);
-    if (!time || !acceleration)
-      fail(path, i, fmt::format("'{}' is not a number", shown(time ? cells[1] : cells[0])));
+    if (!time || !acceleration) fail(path, i, fmt::format("'{}' is not a number", shown(time ? cells[1] : cells[0])));
     times.push_back(columns.time * *time);
     motion.acceleration.push_back(columns.acceleration * *acceleration);
     rows.push_back(i);

@@ -144,7 +144,8 @@ ColumnUnit column_unit(const std::string& name) {
   static const std::regex quantity(R"(^(VEL|VELOCITY|DISP|DISPLACEMENT)(?![A-Z]))");
   const std::string word = upper(text);
   if (!out.unit && !out.time && std::regex_search(word, match, quantity))
-    out.unit = MotionUnit{match[1].str()[0] == 'V' ? MotionQuantity::velocity : MotionQuantity::displacement, 1.0, text};
+    out.unit =
+        MotionUnit{match[1].str()[0] == 'V' ? MotionQuantity::velocity : MotionQuantity::displacement, 1.0, text};
   return out;
 }
 

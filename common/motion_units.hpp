@@ -1,5 +1,5 @@
-// Units of ground motions as people write them: "UNITS OF CM/SEC**2", "acceleration [gal]", "a_m_s2", "Time (ms)". A unit
-// is read or refused, never ignored.
+// Units of ground motions as people write them: "UNITS OF CM/SEC**2", "acceleration [gal]", "a_m_s2", "Time (ms)". A
+// unit is read or refused, never ignored.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
-// Numbers in text files, read the same way in every locale: the decimal point is a point, exponents are E or Fortran's D,
-// a leading + is allowed, and nothing is taken for a number that is one only in part.
+// Numbers in text files, read the same way in every locale: the decimal point is a point, exponents are E or Fortran's
+// D, a leading + is allowed, and nothing is taken for a number that is one only in part.
 #pragma once
 
 #include <optional>

@@ -34,10 +34,11 @@ void require_partners(const Mesh& mesh, const std::vector<std::int64_t>& sorted,
     i = j;
   }
   if (alone > 0)
-    throw InputError(fmt::format("{}: {} of {} nodes have no partner at the same height (within {:.2g} m): {}{}{}; nodes are "
-                                 "tied by their height, so the two sides need the same ones",
-                                 where, alone, sorted.size(), tolerance, places, alone > 5 ? ", ..." : "",
-                                 std::isfinite(nearest) ? fmt::format("; the smallest difference is {:.3g} m", nearest) : ""));
+    throw InputError(
+        fmt::format("{}: {} of {} nodes have no partner at the same height (within {:.2g} m): {}{}{}; nodes are "
+                    "tied by their height, so the two sides need the same ones",
+                    where, alone, sorted.size(), tolerance, places, alone > 5 ? ", ..." : "",
+                    std::isfinite(nearest) ? fmt::format("; the smallest difference is {:.3g} m", nearest) : ""));
 }
 
 }  // namespace

@@ -54,7 +54,8 @@ TimeHistory TimeHistory::table(const std::filesystem::path& path) {
       const ColumnUnit unit = column_unit(found.substr(0, found.find_first_of(",;\t\r")));
       to_seconds = unit.time.value_or(1.0);
       if (!unit.unknown.empty())
-        throw InputError(fmt::format("{}: row 1: '{}' is no unit of time: s or ms is required", path.string(), unit.unknown));
+        throw InputError(
+            fmt::format("{}: row 1: '{}' is no unit of time: s or ms is required", path.string(), unit.unknown));
       continue;
     }
     if (!at || !value || !third.empty())

@@ -99,8 +99,8 @@ Calibrated calibrated(const Pm4SandParameters& given, const Targets& targets) {
   return out;
 }
 
-// When they cannot be met together: over the whole range of Q, with h_po for the cyclic strength at each, the one with the
-// smallest misfit. `by_Q` gets a row for each.
+// When they cannot be met together: over the whole range of Q, with h_po for the cyclic strength at each, the one with
+// the smallest misfit. `by_Q` gets a row for each.
 Calibrated nearest_compromise(const Pm4SandParameters& given, const Targets& targets, Json& by_Q) {
   Calibrated best{given, false, false};
   double least = std::numeric_limits<double>::infinity();
@@ -111,10 +111,10 @@ Calibrated nearest_compromise(const Pm4SandParameters& given, const Targets& tar
     const Fit hpo = fit_hpo(trial, *targets.cyclic);
     trial.contraction_rate = hpo.value;
     const double residual = mean_log_strength_ratio(trial, targets);
-    const double cycles =
-        cycles_to_failure(trial, *targets.cyclic, targets.cyclic->csr, 4.0 * targets.cyclic->cycles);
+    const double cycles = cycles_to_failure(trial, *targets.cyclic, targets.cyclic->csr, 4.0 * targets.cyclic->cycles);
     by_Q.push_back({{"Q", Q}, {"hpo", hpo.value}, {"cycles", cycles}, {"residual_over_target", std::exp(residual)}});
-    const double misfit = std::abs(residual) + (hpo.reached ? 0.0 : std::abs(std::log(cycles / targets.cyclic->cycles)));
+    const double misfit =
+        std::abs(residual) + (hpo.reached ? 0.0 : std::abs(std::log(cycles / targets.cyclic->cycles)));
     if (misfit < least) {
       least = misfit;
       best = {trial, hpo.reached, false};
@@ -200,8 +200,8 @@ CurvePicture strength_curve(const Pm4SandParameters& sand, const Targets& target
   return chart;
 }
 
-// How the strength of one relative density grows with the stress before is fixed by R and Q: targets that grow otherwise are
-// met in the mean only.
+// How the strength of one relative density grows with the stress before is fixed by R and Q: targets that grow
+// otherwise are met in the mean only.
 void note_equal_strengths(const Json& out, const Targets& targets) {
   if (targets.residual.size() < 2) return;
   double low = std::numeric_limits<double>::infinity(), high = 0.0;
@@ -211,14 +211,16 @@ void note_equal_strengths(const Json& out, const Targets& targets) {
     high = std::max(high, ratio);
   }
   if (high > 1.1 * low)
-    add_warning(fmt::format("calibrate: the residual strengths are met in the mean only, at {:.0f} to {:.0f} % of their "
-                            "targets: R and Q fix how strength grows with the stress before, the targets ask for another growth",
-                            100.0 * low, 100.0 * high));
+    add_warning(fmt::format(
+        "calibrate: the residual strengths are met in the mean only, at {:.0f} to {:.0f} % of their "
+        "targets: R and Q fix how strength grows with the stress before, the targets ask for another growth",
+        100.0 * low, 100.0 * high));
 }
 
 std::string what_was_reached(const Json& out, const std::string& alone, const std::string& file) {
-  std::string text = fmt::format("calibrate: the targets cannot be met together: nearest are hpo {:.3g} and Q {:.4g}, with ",
-                                 out.at("hpo").get<double>(), out.at("Q").get<double>());
+  std::string text =
+      fmt::format("calibrate: the targets cannot be met together: nearest are hpo {:.3g} and Q {:.4g}, with ",
+                  out.at("hpo").get<double>(), out.at("Q").get<double>());
   bool first = true;
   if (out.contains("cyclic_strength")) {
     text += fmt::format("{:.3g} cycles for {:g}", out["cyclic_strength"]["cycles"].get<double>(),
@@ -227,8 +229,9 @@ std::string what_was_reached(const Json& out, const std::string& alone, const st
   }
   if (out.contains("residual_strength"))
     for (const auto& row : out["residual_strength"]) {
-      text += fmt::format("{}{:.3g} kPa for {:g} at {:g} kPa", first ? "" : ", ", 1e-3 * row["shear_stress"].get<double>(),
-                          1e-3 * row["target"].get<double>(), 1e-3 * row["vertical_effective_stress"].get<double>());
+      text +=
+          fmt::format("{}{:.3g} kPa for {:g} at {:g} kPa", first ? "" : ", ", 1e-3 * row["shear_stress"].get<double>(),
+                      1e-3 * row["target"].get<double>(), 1e-3 * row["vertical_effective_stress"].get<double>());
       first = false;
     }
   return fmt::format("{}; {}. All of it is in {}", text, alone, file);
@@ -288,9 +291,10 @@ int run_calibration(const CalibrationOptions& options) {
     if (!by_Q.is_null()) out["by_Q"] = by_Q;
   }
   if (sand.contraction_rate > usual_hpo)
-    add_warning(fmt::format("calibrate: hpo = {:.3g} is far above what soils have (0.05 to about 6): the cyclic strength is "
-                            "high for this relative density and Q",
-                            sand.contraction_rate));
+    add_warning(
+        fmt::format("calibrate: hpo = {:.3g} is far above what soils have (0.05 to about 6): the cyclic strength is "
+                    "high for this relative density and Q",
+                    sand.contraction_rate));
   note_equal_strengths(out, targets);
   out["materials"] = materials_block(file.text(), sand);
   out["warnings"] = warnings();

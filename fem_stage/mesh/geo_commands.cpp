@@ -37,8 +37,8 @@ std::vector<Token> tokens_of(const std::string& text) {
       i = std::min(text.find('\n', i), text.size());
     } else if (text.compare(i, 2, "/*") == 0) {
       const std::size_t end = std::min(text.find("*/", i + 2), text.size());
-      line += static_cast<std::size_t>(std::count(text.begin() + static_cast<long>(i),
-                                                  text.begin() + static_cast<long>(end), '\n'));
+      line += static_cast<std::size_t>(
+          std::count(text.begin() + static_cast<long>(i), text.begin() + static_cast<long>(end), '\n'));
       i = std::min(end + 2, text.size());
     } else if (c == '"' || c == '\'') {
       Token token{"", true, line};
@@ -58,9 +58,10 @@ std::vector<Token> tokens_of(const std::string& text) {
 }
 
 [[noreturn]] void refuse(const fs::path& file, const Token& token, const std::string& why) {
-  throw InputError(fmt::format("{}: line {}: '{}' {}. fem_stage does not let a case's geometry do that; if you trust it, give "
-                               "--trust-geometry",
-                               file.string(), token.line, token.text, why));
+  throw InputError(
+      fmt::format("{}: line {}: '{}' {}. fem_stage does not let a case's geometry do that; if you trust it, give "
+                  "--trust-geometry",
+                  file.string(), token.line, token.text, why));
 }
 
 // Whether a word is a command: not a member (Print.Background), not a variable that is assigned.
@@ -80,7 +81,8 @@ void check(const fs::path& file, std::set<fs::path>& seen) {
   constexpr std::array files = {"Save", "Print", "CreateDir", "Plugin"};
   for (std::size_t i = 0; i < tokens.size(); ++i) {
     const Token& token = tokens[i];
-    // The name of a field ("Field[1] = ExternalProcess;") and the options of solvers are no commands, yet start programs.
+    // The name of a field ("Field[1] = ExternalProcess;") and the options of solvers are no commands, yet start
+    // programs.
     if (!token.string && token.text == "ExternalProcess") refuse(file, token, "starts another program");
     if (token.string || !is_command(tokens, i)) continue;
     if (std::find(programs.begin(), programs.end(), token.text) != programs.end())

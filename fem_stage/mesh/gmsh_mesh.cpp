@@ -94,15 +94,15 @@ std::vector<int> groups_of_surface(int tag) {
   int dimension, order, nodes, primary;
   std::vector<double> local;
   gmsh::model::mesh::getElementProperties(type, name, dimension, order, nodes, local, primary);
-  throw InputError(fmt::format(
-      "{}: {} has {} elements of type '{}', but only {} are allowed; {}", source, where, count, name,
-      dimension == 1 ? "two-node lines" : "four-node quadrilaterals",
-      order > 1 ? fmt::format("they are of order {}: set Mesh.ElementOrder = 1 and mesh again", order)
-                : "use Recombine Surface"));
+  throw InputError(
+      fmt::format("{}: {} has {} elements of type '{}', but only {} are allowed; {}", source, where, count, name,
+                  dimension == 1 ? "two-node lines" : "four-node quadrilaterals",
+                  order > 1 ? fmt::format("they are of order {}: set Mesh.ElementOrder = 1 and mesh again", order)
+                            : "use Recombine Surface"));
 }
 
-// The regions of one surface's quadrilaterals: by its physical surface, or, where a file of version 2 has several in one
-// entity, by what each element says.
+// The regions of one surface's quadrilaterals: by its physical surface, or, where a file of version 2 has several in
+// one entity, by what each element says.
 class RegionOf {
  public:
   RegionOf(const std::string& source, int surface, const MshGroups& groups)
@@ -112,23 +112,24 @@ class RegionOf {
           "{}: surface {} is in {} physical surfaces, but every meshed surface must be in exactly one (it names the "
           "region){}",
           source, surface, groups_.size(),
-          groups_.empty() && groups.known ? "; 'Save all elements' loses the groups in format 2: save without it, or as 4.1"
-                                          : ""));
+          groups_.empty() && groups.known
+              ? "; 'Save all elements' loses the groups in format 2: save without it, or as 4.1"
+              : ""));
   }
   int group(const std::size_t* nodes) const {
     if (groups_.size() == 1) return groups_.front();
     const auto it = given_.quadrilaterals.find(ascending(nodes));
     if (it == given_.quadrilaterals.end() || it->second.size() != 1)
-      throw InputError(fmt::format("{}: an element of surface {} is in {} physical surfaces, but exactly one is required "
-                                   "(it names the region)",
-                                   source_, surface_, it == given_.quadrilaterals.end() ? 0 : it->second.size()));
+      throw InputError(
+          fmt::format("{}: an element of surface {} is in {} physical surfaces, but exactly one is required "
+                      "(it names the region)",
+                      source_, surface_, it == given_.quadrilaterals.end() ? 0 : it->second.size()));
     return *it->second.begin();
   }
   std::string name(int group) const {
     const std::string name = name_of_group(2, group);
     if (name.empty())
-      throw InputError(
-          fmt::format("{}: physical surface {} has no name; regions are chosen by name", source_, group));
+      throw InputError(fmt::format("{}: physical surface {} has no name; regions are chosen by name", source_, group));
     return name;
   }
   int first() const { return groups_.front(); }
@@ -166,12 +167,14 @@ void check_plane(const std::vector<double>& points, const std::string& source) {
   if (width(2) <= 1e-6 * size) return;
   for (const auto& [i, plane] : {std::pair{1, "x-z"}, std::pair{0, "y-z"}})
     if (width(static_cast<std::size_t>(i)) <= 1e-6 * size)
-      throw InputError(fmt::format("{}: the mesh lies in the {} plane ({} = {:g} throughout), but the x-y plane is required, "
-                                   "with y upwards: turn the geometry, or swap the columns of the nodes",
-                                   source, plane, i == 1 ? "y" : "x", low[static_cast<std::size_t>(i)]));
-  throw InputError(fmt::format("{}: the mesh is not plane: z goes from {:g} to {:g} m, but one z for all nodes is "
-                               "required (the x-y plane, y upwards)",
-                               source, low[2], high[2]));
+      throw InputError(
+          fmt::format("{}: the mesh lies in the {} plane ({} = {:g} throughout), but the x-y plane is required, "
+                      "with y upwards: turn the geometry, or swap the columns of the nodes",
+                      source, plane, i == 1 ? "y" : "x", low[static_cast<std::size_t>(i)]));
+  throw InputError(
+      fmt::format("{}: the mesh is not plane: z goes from {:g} to {:g} m, but one z for all nodes is "
+                  "required (the x-y plane, y upwards)",
+                  source, low[2], high[2]));
 }
 
 void read_lines(const std::string& source, const MshGroups& given, const std::map<std::size_t, std::int64_t>& number,
@@ -196,9 +199,9 @@ void read_lines(const std::string& source, const MshGroups& given, const std::ma
           fail_type(source, fmt::format("physical curve '{}'", name), types[k], element_tags[k].size());
         for (std::size_t i = 0; i + 1 < node_tags[k].size(); i += 2) {
           const auto p = node_tags[k][i], q = node_tags[k][i + 1];
-          if (given.known && (own == given.lines.end() ||
-                              !own->second.contains({static_cast<std::int64_t>(std::min(p, q)),
-                                                     static_cast<std::int64_t>(std::max(p, q))})))
+          if (given.known &&
+              (own == given.lines.end() || !own->second.contains({static_cast<std::int64_t>(std::min(p, q)),
+                                                                  static_cast<std::int64_t>(std::max(p, q))})))
             continue;
           const auto a = number.find(p), b = number.find(q);
           if (a == number.end() || b == number.end()) {
@@ -212,9 +215,10 @@ void read_lines(const std::string& source, const MshGroups& given, const std::ma
       }
     }
     if (loose > 0)
-      add_warning(fmt::format("{}: {} line elements of the physical curve '{}' touch no quadrilateral (a curve with nodes of "
-                              "its own?) and are left out",
-                              source, loose, name));
+      add_warning(
+          fmt::format("{}: {} line elements of the physical curve '{}' touch no quadrilateral (a curve with nodes of "
+                      "its own?) and are left out",
+                      source, loose, name));
   }
 }
 
@@ -302,7 +306,8 @@ Mesh mesh_geometry(const std::filesystem::path& geometry, const GeometryOptions&
       }
       return std::string();
     });
-    // What counts is what is on disk: the geometry's own options (Mesh.ScalingFactor) act on it, and so does a full disk.
+    // What counts is what is on disk: the geometry's own options (Mesh.ScalingFactor) act on it, and so does a full
+    // disk.
     Mesh mesh = read_gmsh(temporary, geometry.string());
     std::filesystem::rename(temporary, output);
     return mesh;
@@ -332,9 +337,10 @@ Mesh read_gmsh(const std::filesystem::path& path, const std::string& source) {
     return std::move(mesh);
   } catch (const InputError& error) {
     if (!groups.partitioned) throw;
-    throw InputError(fmt::format("{}. The mesh is cut into partitions, of which this file may have one, or ghost cells of the "
-                                 "others: in gmsh, Mesh > Unpartition, and save it whole",
-                                 error.what()));
+    throw InputError(
+        fmt::format("{}. The mesh is cut into partitions, of which this file may have one, or ghost cells of the "
+                    "others: in gmsh, Mesh > Unpartition, and save it whole",
+                    error.what()));
   }
 }
 

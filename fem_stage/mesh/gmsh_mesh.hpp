@@ -16,15 +16,16 @@ struct GeometryOptions {
 };
 
 // Meshes a .geo file in 2-D and writes the mesh to `output` (gmsh 4.1 ASCII), as it is when read back and checked
-// (check_mesh). The user's own gmsh settings play no part. gmsh runs in a process of its own (isolated.hpp). Throws InputError:
-// gmsh's own messages, commands that start programs or write files, a geometry that ends gmsh or takes too long.
+// (check_mesh). The user's own gmsh settings play no part. gmsh runs in a process of its own (isolated.hpp). Throws
+// InputError: gmsh's own messages, commands that start programs or write files, a geometry that ends gmsh or takes too
+// long.
 Mesh mesh_geometry(const std::filesystem::path& geometry, const GeometryOptions& options,
                    const std::filesystem::path& output);
 
-// Reads a .msh file of quadrilaterals with physical surfaces and curves, and checks it (msh_audit.hpp, check_mesh). Edges
-// that a curve has twice count once. Throws InputError: missing or damaged file, triangles, second order, partitions, a
-// sheet that is not in the x-y plane, elements in no or in two physical surfaces. Warns of line elements that touch no
-// quadrilateral.
+// Reads a .msh file of quadrilaterals with physical surfaces and curves, and checks it (msh_audit.hpp, check_mesh).
+// Edges that a curve has twice count once. Throws InputError: missing or damaged file, triangles, second order,
+// partitions, a sheet that is not in the x-y plane, elements in no or in two physical surfaces. Warns of line elements
+// that touch no quadrilateral.
 Mesh read_gmsh(const std::filesystem::path& path);
 
 // The same, with another name for messages: `path` may be temporary.

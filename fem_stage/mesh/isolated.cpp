@@ -40,8 +40,8 @@ void write_all(int file, const char* data, std::size_t size) {
   }
 }
 
-// execve answers "not permitted" from now on. A kernel without seccomp leaves it: the geometry has been read for commands
-// before (geo_commands.hpp), this is the second lock.
+// execve answers "not permitted" from now on. A kernel without seccomp leaves it: the geometry has been read for
+// commands before (geo_commands.hpp), this is the second lock.
 void refuse_programs() {
   sock_filter filter[] = {
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
@@ -106,7 +106,7 @@ std::string how_it_ended(int status) {
   if (WIFSIGNALED(status))
     return fmt::format("gmsh crashed on it ({}): the file is damaged, or asks for what this version of gmsh cannot do",
                        strsignal(WTERMSIG(status)));
-  return "it ended gmsh before the mesh was done ('Exit' or 'Abort' in the geometry?)";
+  return "it ended gmsh before the mesh was done ('Exit' in the geometry?)";
 }
 
 }  // namespace
@@ -124,9 +124,9 @@ std::string run_isolated(const std::string& what, const IsolationLimits& limits,
     child(ends[1], limits, work);
   }
   close(ends[1]);
-  const auto deadline = std::chrono::steady_clock::now() +
-                        std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                            std::chrono::duration<double>(std::min(limits.seconds, 1e8)));
+  const auto deadline =
+      std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                             std::chrono::duration<double>(std::min(limits.seconds, 1e8)));
   std::string answer;
   bool late = false;
   for (char buffer[1 << 16];;) {
@@ -151,10 +151,10 @@ std::string run_isolated(const std::string& what, const IsolationLimits& limits,
   while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
   }
   if (late)
-    throw InputError(fmt::format("{}: gmsh was not done after {:g} s{} and was stopped: does a macro or a loop in it "
-                                 "never end?",
-                                 what, limits.seconds,
-                                 limits.time_limit_name.empty() ? "" : " (" + limits.time_limit_name + ")"));
+    throw InputError(
+        fmt::format("{}: gmsh was not done after {:g} s{} and was stopped: does a macro or a loop in it "
+                    "never end?",
+                    what, limits.seconds, limits.time_limit_name.empty() ? "" : " (" + limits.time_limit_name + ")"));
   const bool whole = WIFEXITED(status) && WEXITSTATUS(status) == 0 && !answer.empty();
   if (!whole) throw InputError(fmt::format("{}: {}", what, how_it_ended(status)));
   const char outcome = answer.front();

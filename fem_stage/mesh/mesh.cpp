@@ -113,8 +113,9 @@ void check_mesh(Mesh& mesh, const std::string& source) {
     for (const auto node : shape) used[static_cast<std::size_t>(node)] = 1;
     std::sort(shape.begin(), shape.end());
     if (!shapes.insert(shape).second)
-      throw InputError(fmt::format("{}: the element at ({:.4g}, {:.4g}) is there twice; it would be twice as stiff and heavy",
-                                   source, mesh.centre(e)[0], mesh.centre(e)[1]));
+      throw InputError(
+          fmt::format("{}: the element at ({:.4g}, {:.4g}) is there twice; it would be twice as stiff and heavy",
+                      source, mesh.centre(e)[0], mesh.centre(e)[1]));
   }
   for (std::size_t n = 0; n < mesh.nodes(); ++n)
     if (!used[n])

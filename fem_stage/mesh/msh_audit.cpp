@@ -23,8 +23,8 @@ constexpr int line_type = 1, quadrilateral_type = 3;
 
 // Nodes by gmsh's number of the element type; 0 where it is not one that a plane mesh can have.
 int nodes_of_type(std::int64_t type) {
-  constexpr int nodes[] = {0, 2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10, 12, 15, 15, 21,
-                           4, 5, 6, 20};
+  constexpr int nodes[] = {0, 2, 3,  4,  4,  8, 6,  5,  3,  6,  9,  10, 27, 18, 14,
+                           1, 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4,  5,  6,  20};
   return type > 0 && type < static_cast<std::int64_t>(std::size(nodes)) ? nodes[type] : 0;
 }
 
@@ -72,8 +72,7 @@ class Reader {
     const std::int64_t n = integer(what);
     if (n < 0) fail(fmt::format("{} is {}, but a count cannot be negative", what, n));
     const auto room = static_cast<std::int64_t>((end() - at_) / 2 + 1);  // a digit and a blank each
-    if (n > most)
-      fail(fmt::format("{} is {}, but the section's head announces only {} more", what, n, most));
+    if (n > most) fail(fmt::format("{} is {}, but the section's head announces only {} more", what, n, most));
     if (n > room) fail(fmt::format("{} is {}, but the section is too short for more than {}", what, n, room));
     return n;
   }
@@ -81,9 +80,10 @@ class Reader {
   void go_to(std::size_t offset) { at_ = offset; }
   std::size_t at() const { return at_; }
   [[noreturn]] void fail(const std::string& message) const {
-    const auto line = 1 + std::count(text_.begin(), text_.begin() + static_cast<long>(std::min(at_, text_.size())), '\n');
-    throw InputError(fmt::format("{}: line {}: {}{}", source_, line,
-                                 section.empty() ? "" : "$" + section + ": ", message));
+    const auto line =
+        1 + std::count(text_.begin(), text_.begin() + static_cast<long>(std::min(at_, text_.size())), '\n');
+    throw InputError(
+        fmt::format("{}: line {}: {}{}", source_, line, section.empty() ? "" : "$" + section + ": ", message));
   }
   std::string section;
 
@@ -165,8 +165,7 @@ class Audit {
       left -= n;
       rows(dimension, kind, n);
     }
-    if (left != 0)
-      in_.fail(fmt::format("the head announces {} more {} than the blocks have", left, what));
+    if (left != 0) in_.fail(fmt::format("the head announces {} more {} than the blocks have", left, what));
   }
 
   void node_tag() {
@@ -209,9 +208,10 @@ class Audit {
   }
 
   [[noreturn]] void unknown_type(std::int64_t type) const {
-    in_.fail(fmt::format("elements of gmsh's type {} are of high order or not of a plane mesh; allowed are four-node "
-                         "quadrilaterals (type 3), two-node lines and points: set Mesh.ElementOrder = 1 and mesh again",
-                         type));
+    in_.fail(
+        fmt::format("elements of gmsh's type {} are of high order or not of a plane mesh; allowed are four-node "
+                    "quadrilaterals (type 3), two-node lines and points: set Mesh.ElementOrder = 1 and mesh again",
+                    type));
   }
 
   void end_of_section() {
@@ -234,16 +234,17 @@ MshGroups audit_msh(const std::filesystem::path& path, const std::string& source
   Reader in(source, text);
   if (in.at_end()) in.fail("the file is empty");
   if (text[in.at()] != '$')
-    in.fail("this is no gmsh mesh (it does not begin with $MeshFormat); a geometry goes to /mesh/geometry, other formats "
-            "can be saved as .msh by gmsh");
+    in.fail(
+        "this is no gmsh mesh (it does not begin with $MeshFormat); a geometry goes to /mesh/geometry, other formats "
+        "can be saved as .msh by gmsh");
   double version = 0.0;
   std::size_t parts = 0;
   MshGroups unseen;
   if (const auto at = text.find("\n$PartitionedEntities"); at != std::string::npos) {
     unseen.partitioned = true;
     const auto head = text.find_first_of("\n", at + 1);
-    if (std::from_chars(text.data() + std::min(head + 1, text.size()), text.data() + text.size(), unseen.partitions).ec !=
-        std::errc())
+    if (std::from_chars(text.data() + std::min(head + 1, text.size()), text.data() + text.size(), unseen.partitions)
+            .ec != std::errc())
       unseen.partitions = 0;
   }
   std::optional<Audit> audit;

@@ -18,13 +18,14 @@ std::vector<std::string> keys_of(const auto& map) {
 }
 
 // A request that no machine carries out is refused with its numbers, before anything is computed.
-constexpr double most_steps = 1e8;       // at 10 us for the smallest model: a quarter of an hour
-constexpr double most_elements = 2e7;    // of a rectangle: at some 3 kB each, 60 GB
+constexpr double most_steps = 1e8;     // at 10 us for the smallest model: a quarter of an hour
+constexpr double most_elements = 2e7;  // of a rectangle: at some 3 kB each, 60 GB
 
 void limit_steps(const CaseNode& node, const std::string& key, double length, double step, const char* what) {
   if (!(length / step <= most_steps))
-    node.fail(key, fmt::format("found {:g} s, which makes {:.3g} steps of the {} of {:g} s, but at most {:g} are allowed",
-                               step, length / step, what, length, most_steps));
+    node.fail(key,
+              fmt::format("found {:g} s, which makes {:.3g} steps of the {} of {:g} s, but at most {:g} are allowed",
+                          step, length / step, what, length, most_steps));
 }
 
 RectangleMesh read_rectangle(const CaseNode& node) {
@@ -78,8 +79,9 @@ MeshOptions read_mesh(const CaseNode& node, const std::string& size) {
     for (const auto& layer : mesh.rectangle->layers) rows += refine * layer.rows;
     const double columns = refine * mesh.rectangle->columns;
     if (columns * rows > most_elements)
-      node.fail("rectangle", fmt::format("{:g} columns and {:g} rows make {:.3g} elements, but at most {:g} are allowed",
-                                         columns, rows, columns * rows, most_elements));
+      node.fail("rectangle",
+                fmt::format("{:g} columns and {:g} rows make {:.3g} elements, but at most {:g} are allowed", columns,
+                            rows, columns * rows, most_elements));
     mesh.rectangle->columns = static_cast<int>(columns);
     for (auto& layer : mesh.rectangle->layers) layer.rows = static_cast<int>(refine * layer.rows);
   }
@@ -147,8 +149,8 @@ ConsolidationOptions read_consolidation(const CaseNode& node) {
   if (const double first = std::min(out.first_step, out.largest_step); out.growth - 1.0 < 1e-6)
     limit_steps(node, "first_step", out.duration, first, "consolidation");
   else if (4.0 * std::log(out.largest_step / first) / std::log(out.growth) > most_steps)
-    node.fail("growth", fmt::format("found {:g}, with which steps of {:g} s grow too slowly to {:g} s", out.growth, first,
-                                    out.largest_step));
+    node.fail("growth", fmt::format("found {:g}, with which steps of {:g} s grow too slowly to {:g} s", out.growth,
+                                    first, out.largest_step));
   out.ratio_limit = node.number_or("ratio_limit", "1", Range::non_negative(), out.ratio_limit);
   out.rest_velocity = node.number_or("rest_velocity", "m/s", Range::positive(), out.rest_velocity);
   out.post_shaking = node.boolean_or("post_shaking", out.post_shaking);

@@ -72,11 +72,13 @@ void check_joints(const Mesh& mesh, const BoundaryOptions& boundaries, const std
       largest_gap = std::max(largest_gap, gap);
     }
   if (pairs > 0)
-    throw InputError(fmt::format(
-        "{}: the mesh is cut: {} pairs of nodes lie in one place (up to {:.2g} m apart) and belong to different elements, for "
-        "instance nodes {} and {} at ({:.4g}, {:.4g}). Parts that are to move together must share their nodes: one curve "
-        "for both sides in the geometry (Coherence), or merge the nodes (Coherence Mesh)",
-        source, pairs, largest_gap, first, second, mesh.x(first), mesh.y(first)));
+    throw InputError(
+        fmt::format("{}: the mesh is cut: {} pairs of nodes lie in one place (up to {:.2g} m apart) and belong to "
+                    "different elements, for "
+                    "instance nodes {} and {} at ({:.4g}, {:.4g}). Parts that are to move together must share their "
+                    "nodes: one curve "
+                    "for both sides in the geometry (Coherence), or merge the nodes (Coherence Mesh)",
+                    source, pairs, largest_gap, first, second, mesh.x(first), mesh.y(first)));
 }
 
 }  // namespace tailrun::fem

@@ -1,5 +1,5 @@
-// Whether the parts of a mesh hang together: two blocks side by side that were meshed with nodes of their own look like one
-// body in every picture, and are cut.
+// Whether the parts of a mesh hang together: two blocks side by side that were meshed with nodes of their own look like
+// one body in every picture, and are cut.
 #pragma once
 
 #include "fem_stage/mesh/mesh.hpp"

@@ -67,8 +67,8 @@ void gather_loads(const FemCase& options, Model& model) {
             return std::min(model.mesh.y(static_cast<std::size_t>(edge.a)),
                             model.mesh.y(static_cast<std::size_t>(edge.b))) < pond.level;
           }))
-        add_warning(fmt::format("{}: line '{}' lies above the level {:g} m, so that no water stands on it", pond.where, line,
-                                pond.level));
+        add_warning(fmt::format("{}: line '{}' lies above the level {:g} m, so that no water stands on it", pond.where,
+                                line, pond.level));
       model.loads.push_back(
           {pond_forces(model.mesh, edges, pond.level, options.fluid_density * options.gravity), {}, true, true});
     }
@@ -136,10 +136,10 @@ void gather_base(Model& model) {
     const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b);
     const auto thickness = edge_thickness.find({std::min(a, b), std::max(a, b)});
     if (thickness == edge_thickness.end())
-      throw InputError(fmt::format("/boundaries/base: an edge of line '{}' at ({:.4g}, {:.4g}) is no side of an element",
-                                   model.options->boundaries.base_line, mesh.x(ia), mesh.y(ia)));
-    const double half =
-        0.5 * std::hypot(mesh.x(ia) - mesh.x(ib), mesh.y(ia) - mesh.y(ib)) * thickness->second;
+      throw InputError(
+          fmt::format("/boundaries/base: an edge of line '{}' at ({:.4g}, {:.4g}) is no side of an element",
+                      model.options->boundaries.base_line, mesh.x(ia), mesh.y(ia)));
+    const double half = 0.5 * std::hypot(mesh.x(ia) - mesh.x(ib), mesh.y(ia) - mesh.y(ib)) * thickness->second;
     for (const auto node : {a, b})
       model.base_area[static_cast<std::size_t>(
           std::lower_bound(model.base_nodes.begin(), model.base_nodes.end(), node) - model.base_nodes.begin())] += half;

@@ -47,10 +47,11 @@ void check_place(const Mesh& mesh, const NamedPoint& place, const char* key) {
   const double allowed = longest_side(mesh, nearest);
   if (distance <= allowed) return;
   const std::size_t node = mesh.nearest_node(place.x, place.y);
-  throw InputError(fmt::format(
-      "/output/{}/{}: ({:.6g}, {:.6g}) is {:.4g} m off the mesh, but at most one element ({:.3g} m there) is allowed; the "
-      "nearest node is at ({:.6g}, {:.6g})",
-      key, place.name, place.x, place.y, distance, allowed, mesh.x(node), mesh.y(node)));
+  throw InputError(
+      fmt::format("/output/{}/{}: ({:.6g}, {:.6g}) is {:.4g} m off the mesh, but at most one element ({:.3g} m there) "
+                  "is allowed; the "
+                  "nearest node is at ({:.6g}, {:.6g})",
+                  key, place.name, place.x, place.y, distance, allowed, mesh.x(node), mesh.y(node)));
 }
 
 }  // namespace

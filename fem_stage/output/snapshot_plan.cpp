@@ -50,8 +50,9 @@ SnapshotPlan::SnapshotPlan(const StepGrid& grid, const std::vector<double>& list
       times_.push_back(at);
   }
   if (!late.empty())
-    add_warning(fmt::format("/output/snapshots: {} s: after the end of the shaking (/shake/duration, {:g} s): not written",
-                            first_few(late), grid.duration));
+    add_warning(
+        fmt::format("/output/snapshots: {} s: after the end of the shaking (/shake/duration, {:g} s): not written",
+                    first_few(late), grid.duration));
   if (!between.empty())
     add_warning(fmt::format("/output/snapshots: {} s: between two steps of {:g} s: written at the end of the step",
                             first_few(between), grid.step));

@@ -19,8 +19,8 @@ class SnapshotPlan {
   SnapshotPlan() = default;
   // At the given times (s), whatever the steps are.
   explicit SnapshotPlan(std::vector<double> times);
-  // Of the listed times and regularly, on a grid of steps; `interval` 0: none regularly. Warns of times after the end, between
-  // steps, and of two that fall on one step.
+  // Of the listed times and regularly, on a grid of steps; `interval` 0: none regularly. Warns of times after the end,
+  // between steps, and of two that fall on one step.
   SnapshotPlan(const StepGrid& grid, const std::vector<double>& listed, double interval);
 
   std::size_t count() const { return times_.size(); }

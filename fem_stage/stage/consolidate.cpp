@@ -86,9 +86,10 @@ ConsolidationReport run_consolidation(const Model& model, MaterialPoints& points
     if (after < options.duration)
       wanted.insert(report.start_time + after);
     else
-      add_warning(fmt::format("/consolidation/snapshots: {:g} s: not before the end ({:g} s): not written; the last state is "
-                              "consolidated.h5",
-                              after, options.duration));
+      add_warning(
+          fmt::format("/consolidation/snapshots: {:g} s: not before the end ({:g} s): not written; the last state is "
+                      "consolidated.h5",
+                      after, options.duration));
   const SnapshotPlan plan(std::vector<double>(wanted.begin(), wanted.end()));
 
   Progress progress("consolidate", options.duration, "s");

@@ -107,9 +107,8 @@ void check_shake_output(const FemCase& options, double state_bytes, const std::f
   const double most = shake.duration / std::max(output.history_interval, shake.time_step);
   const double columns = 1.0 + 7.0 * static_cast<double>(output.points.size()) +
                          6.0 * static_cast<double>(output.elements.size()) + 12.0;  // quality.csv's
-  const double regular = output.snapshot_interval > 0.0
-                             ? shake.duration / std::max(output.snapshot_interval, shake.time_step)
-                             : 0.0;
+  const double regular =
+      output.snapshot_interval > 0.0 ? shake.duration / std::max(output.snapshot_interval, shake.time_step) : 0.0;
   const double snapshots = regular + static_cast<double>(output.snapshots.size());
   constexpr double number = 12.0;  // bytes of one in a table
   const double bytes = snapshots * state_bytes + most * columns * number;
@@ -118,10 +117,10 @@ void check_shake_output(const FemCase& options, double state_bytes, const std::f
   const auto space = std::filesystem::space(folder.empty() ? "." : folder, unknown);
   if (unknown || bytes <= static_cast<double>(space.available)) return;
   throw InputError(fmt::format(
-      "/output: {:.3g} snapshots of {:.3g} MB and {:.3g} rows of histories make {:.3g} GB, but {} has {:.3g} GB free; ask "
+      "/output: {:.3g} snapshots of {:.3g} MB and {:.3g} rows of histories make {:.3g} GB, but {} has {:.3g} GB free; "
+      "ask "
       "for fewer (/output/snapshot_interval, history_interval)",
-      snapshots, 1e-6 * state_bytes, most, 1e-9 * bytes, folder.string(),
-      1e-9 * static_cast<double>(space.available)));
+      snapshots, 1e-6 * state_bytes, most, 1e-9 * bytes, folder.string(), 1e-9 * static_cast<double>(space.available)));
 }
 
 ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, const Motion& motion,

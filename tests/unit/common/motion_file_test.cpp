@@ -22,7 +22,8 @@ std::filesystem::path written(const std::string& name, const std::string& text) 
 }
 
 Motion at2(const std::string& units, const std::string& counts, const std::string& values) {
-  return read_at2(written("a.AT2", "PEER\nStation 12, Vs30 = 760 m/s\n" + units + "\n" + counts + "\n" + values + "\n"));
+  return read_at2(
+      written("a.AT2", "PEER\nStation 12, Vs30 = 760 m/s\n" + units + "\n" + counts + "\n" + values + "\n"));
 }
 
 Motion csv(const std::string& text) {
@@ -53,8 +54,8 @@ TEST_CASE("units in the text above an AT2 file's values") {
                         "ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.1 Hz LP=35.0 Hz",
                         "Acceleration (g)", "ACCELERATION IN G", "UNITS: G'S", "units = (g)"})
     CHECK_MESSAGE(peak(g) == 9.81 * 2.0, g);
-  for (const char* cm : {"CM/SEC**2", "CM/SEC2", "CM/SEC/SEC", "cm/s/s", "cm/s^2", "CM/S**2", "GAL", "gals", "cm/sec/sec.",
-                         "CM / SEC ** 2", "cm s-2", "CM PER SEC PER SEC", "cm/s\u00b2"})
+  for (const char* cm : {"CM/SEC**2", "CM/SEC2", "CM/SEC/SEC", "cm/s/s", "cm/s^2", "CM/S**2", "GAL", "gals",
+                         "cm/sec/sec.", "CM / SEC ** 2", "cm s-2", "CM PER SEC PER SEC", "cm/s\u00b2"})
     CHECK_MESSAGE(peak(std::string("ACCELERATION TIME SERIES IN UNITS OF ") + cm) == doctest::Approx(0.02), cm);
   CHECK(peak("ACCELERATION, UNITS: M/S/S") == doctest::Approx(2.0));
   CHECK(peak("UNITS OF M/SEC**2") == doctest::Approx(2.0));
@@ -63,9 +64,9 @@ TEST_CASE("units in the text above an AT2 file's values") {
   CHECK(peak("UNITS OF FT/SEC2") == doctest::Approx(2.0 * 0.3048));
   CHECK(peak("UNITS OF MG") == doctest::Approx(2e-3 * 9.81));
   CHECK(peak("UNITS OF %G") == doctest::Approx(2e-2 * 9.81));
-  for (const char* wrong : {"VELOCITY TIME SERIES IN UNITS OF CM/SEC", "VELOCITY TIME SERIES", "UNITS OF CM/S", "UNITS OF CM",
-                            "DISPLACEMENT TIME HISTORY IN UNITS OF M", "ACCELERATION IN UNITS OF FURLONGS",
-                            "ACCELERATION IN UNITS OF COUNTS", "VELOCITY (cm/s)"})
+  for (const char* wrong : {"VELOCITY TIME SERIES IN UNITS OF CM/SEC", "VELOCITY TIME SERIES", "UNITS OF CM/S",
+                            "UNITS OF CM", "DISPLACEMENT TIME HISTORY IN UNITS OF M",
+                            "ACCELERATION IN UNITS OF FURLONGS", "ACCELERATION IN UNITS OF COUNTS", "VELOCITY (cm/s)"})
     CHECK_MESSAGE(!refusal([&] { peak(wrong); }).empty(), wrong);
   forget_warnings();
   CHECK(peak("nothing about it") == 9.81 * 2.0);
@@ -110,8 +111,8 @@ TEST_CASE("values that Fortran wrote: D exponents, columns that touch, a leading
 
 TEST_CASE("columns of a table: names with units") {
   const auto motion = [](const std::string& header) { return csv(header + "\n0,0\n5,2\n10,0\n"); };
-  for (const char* name : {"t,a", "time,acc", "t_s,a_m_s2", "time [s], acceleration [m/s2]", "\"Time (s)\",\"Acc (m/s/s)\"",
-                           "Time,Acceleration EW", "# t s, a m/s2"}) {
+  for (const char* name : {"t,a", "time,acc", "t_s,a_m_s2", "time [s], acceleration [m/s2]",
+                           "\"Time (s)\",\"Acc (m/s/s)\"", "Time,Acceleration EW", "# t s, a m/s2"}) {
     CHECK_MESSAGE(motion(name).time_step == 5.0, name);
     CHECK_MESSAGE(motion(name).peak_acceleration() == 2.0, name);
   }
@@ -121,8 +122,8 @@ TEST_CASE("columns of a table: names with units") {
     CHECK_MESSAGE(motion(name).peak_acceleration() == doctest::Approx(0.02), name);
   for (const char* name : {"time_ms,a", "Time (ms),a", "t [msec],a [m/s2]"})
     CHECK_MESSAGE(motion(name).time_step == doctest::Approx(0.005), name);
-  for (const char* name : {"t,v_m_s", "time,velocity (cm/s)", "t,velocity", "t,a [furlong]", "t [km],a", "a (g),t (s)",
-                           "t,ew,ns"})
+  for (const char* name :
+       {"t,v_m_s", "time,velocity (cm/s)", "t,velocity", "t,a [furlong]", "t [km],a", "a (g),t (s)", "t,ew,ns"})
     CHECK_MESSAGE(!refusal([&] { motion(name); }).empty(), name);
   CHECK(csv("Time (s)  Acc (g)\n0 0\n1 1\n").peak_acceleration() == doctest::Approx(9.81));
   CHECK(csv("# El Centro\n# units: gal\n0 0\n1 1\n").peak_acceleration() == doctest::Approx(0.01));

@@ -155,7 +155,8 @@ TEST_CASE("calibration: targets that conflict leave what was reached and what ea
   CHECK(found.at("reached").at("cyclic_strength") == true);
   CHECK(found.at("reached").at("residual_strength") == false);
   CHECK(found.at("cyclic_strength").at("cycles").get<double>() == doctest::Approx(15.0).epsilon(0.03));
-  CHECK(found.at("asked_for_alone").at("cyclic_strength").at("hpo").get<double>() == doctest::Approx(5.65).epsilon(0.01));
+  CHECK(found.at("asked_for_alone").at("cyclic_strength").at("hpo").get<double>() ==
+        doctest::Approx(5.65).epsilon(0.01));
   double nearest = 10.0;
   for (const auto& row : found.at("by_Q"))
     nearest = std::min(nearest, std::abs(std::log(row.at("residual_over_target").get<double>())));
