@@ -25,11 +25,34 @@ struct Token {
   std::size_t line = 1;
 };
 
-// Words, strings and other characters; comments left out.
+bool is_word(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+}
+
+// Every word of the text, in strings and comments, too, and the signs that tell a redirection.
+std::vector<Token> all_words(const std::string& text) {
+  std::vector<Token> tokens;
+  std::size_t line = 1;
+  for (std::size_t i = 0; i < text.size();) {
+    if (text[i] == '\n') ++line;
+    if (!is_word(text[i])) {
+      if (std::string_view(")>;").find(text[i]) != std::string_view::npos)
+        tokens.push_back({std::string(1, text[i]), false, line});
+      ++i;
+      continue;
+    }
+    Token token{"", false, line};
+    for (; i < text.size() && is_word(text[i]); ++i) token.text += text[i];
+    tokens.push_back(token);
+  }
+  return tokens;
+}
+
+// Words, strings and other characters; comments left out. Where a string runs over its line or has a backslash before a
+// quote, it may end elsewhere for gmsh than here, and what is hidden in it cannot be told: then every word counts.
 std::vector<Token> tokens_of(const std::string& text) {
   std::vector<Token> tokens;
   std::size_t line = 1;
-  const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
   for (std::size_t i = 0; i < text.size();) {
     const char c = text[i];
     if (c == '\n') ++line;
@@ -43,6 +66,8 @@ std::vector<Token> tokens_of(const std::string& text) {
     } else if (c == '"' || c == '\'') {
       Token token{"", true, line};
       for (++i; i < text.size() && text[i] != c && text[i] != '\n'; ++i) token.text += text[i];
+      if (i >= text.size() || text[i] == '\n' || (!token.text.empty() && token.text.back() == '\\'))
+        return all_words(text);
       ++i;
       tokens.push_back(token);
     } else if (is_word(c)) {

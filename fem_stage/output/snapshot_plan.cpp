@@ -59,6 +59,11 @@ SnapshotPlan::SnapshotPlan(const StepGrid& grid, const std::vector<double>& list
   if (!together.empty())
     add_warning(fmt::format("/output/snapshots: {} s: on the same step of {:g} s as the one before: one file for both",
                             first_few(together), grid.step));
+  if (interval > grid.duration + slack)
+    add_warning(
+        fmt::format("/output/snapshot_interval: {:g} s is longer than the shaking (/shake/duration, {:g} s): none is "
+                    "written for it",
+                    interval, grid.duration));
   if (interval > 0.0)
     for (double k = 1.0; k * std::max(interval, grid.step) <= grid.duration + slack; ++k)
       times_.push_back(grid.first_at(k * std::max(interval, grid.step)));

@@ -12,6 +12,7 @@
 #include "common/error.hpp"
 #include "fem_stage/mesh/geo_commands.hpp"
 #include "fem_stage/mesh/gmsh_mesh.hpp"
+#include "fem_stage/mesh/isolated.hpp"
 
 using namespace tailrun;
 using namespace tailrun::fem;
@@ -67,8 +68,10 @@ TEST_CASE("commands that start programs or write files are refused, wherever the
            "Save \"" + mark + "\";", "Print \"" + mark + "\";", "Printf(\"a\") > \"" + mark + "\";",
            "Printf(\"%g\", 1) >> \"" + mark + "\";", "CreateDir \"" + mark + "\";",
            "Parse(StrCat(\"System\", \"Call 'touch " + mark + "';\"));", "name = \"inner.geo\"; Include name;",
-           "Include \"inner.geo\";", "Merge \"inner.geo\";", "If (1) SystemCall(\"touch " + mark + "\"); EndIf",
-           "/* */ SystemCall /* */ Str(\"touch " + mark + "\");"}) {
+           "Include \"inner.geo\";", "Merge \"inner.geo\";",
+           "x = \"a\\\" b\"; SystemCall \"touch " + mark + "\"; y = \"c\";",
+           "x = \"a\n\"; Printf(\"a\") > \"" + mark + "\";", "x = \"a\n\"; SystemCall \"touch " + mark + "\";",
+           "If (1) SystemCall(\"touch " + mark + "\"); EndIf", "/* */ SystemCall /* */ Str(\"touch " + mark + "\");"}) {
     folder.written("inner.geo", "NonBlockingSystemCall \"touch " + mark + "\";\n");
     const std::string message = refusal(folder, square + command);
     CHECK_MESSAGE(message.find("--trust-geometry") != std::string::npos, command, message);
@@ -85,6 +88,29 @@ TEST_CASE("a trusted geometry may start programs; the second lock holds the othe
   const auto geometry = folder.written("t.geo", square + ("SystemCall \"touch " + mark + "\";"));
   mesh_geometry(geometry, {{}, 60.0, true}, folder.path / "t.msh");
   CHECK(fs::exists(mark));
+}
+
+TEST_CASE("work in a process of its own: no programs, its own end, its exceptions and its result") {
+  const Folder folder;
+  const std::string mark = (folder.path / "was_here").string(), touch = "touch " + mark;
+  const auto start_program = [&] { return std::to_string(std::system(touch.c_str())); };
+  CHECK(run_isolated("x", {}, start_program) != "0");
+  CHECK(!fs::exists(mark));
+  IsolationLimits trusted;
+  trusted.may_start_programs = true;
+  CHECK(run_isolated("x", trusted, start_program) == "0");
+  CHECK(fs::exists(mark));
+  const std::string large(5'000'000, 'a');
+  CHECK(run_isolated("x", {}, [&] { return large; }) == large);
+  CHECK_THROWS_WITH_AS(run_isolated("x", {}, []() -> std::string { throw InputError("mine"); }), "mine", InputError);
+  CHECK_THROWS_AS(run_isolated("x", {}, []() -> std::string { throw ComputationError("y"); }), ComputationError);
+  CHECK_THROWS_AS(run_isolated("x", {}, []() -> std::string { std::exit(0); }), InputError);
+  CHECK_THROWS_AS(run_isolated("x", {}, []() -> std::string { std::abort(); }), InputError);
+#ifndef __SANITIZE_ADDRESS__
+  IsolationLimits small;
+  small.memory = std::size_t{1} << 28;
+  CHECK_THROWS_AS(run_isolated("x", small, [] { return std::string(std::size_t{1} << 30, 'a'); }), InputError);
+#endif
 }
 
 TEST_CASE("Exit ends gmsh, not the program; loops and macros without end are stopped") {
