@@ -65,4 +65,8 @@ def collect(results, phase):
         ]
         if crest[0] is not None:
             rows.insert(-3, ("MPM", "crest sinks by", show(crest[0] - crest[1] + 0.0), "m"))
+    geostatic = chain.summary(results / "fem" / "geostatic.json")
+    for stage, summaries in (("FEM", (mesh, geostatic, fem)), ("MPM", (mpm,))):
+        told = [text for summary in summaries if summary for text in summary.get("warnings", [])]
+        rows += [(stage, "warning", text, "") for text in dict.fromkeys(told)]
     return rows
