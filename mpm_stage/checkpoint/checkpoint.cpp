@@ -29,6 +29,7 @@ void for_each_kept_column(P& particles, Action action) {
   action(std::string("plastic_strain"), "1", particles.plastic_strain);
   action(std::string("strength"), "Pa", particles.strength);
   action(std::string("pore_pressure"), "Pa", particles.pore_pressure);
+  action(std::string("rest_volume"), "m3", particles.rest_volume);
 }
 
 // Single numbers, each with its name: state of solver and run loop. Integers below 2^53 are exact as doubles.
@@ -244,7 +245,7 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
   const std::size_t n = materials.size();
   check_indices(file, "/particles/identity", identities, 0, static_cast<std::int64_t>(like.count()));
   Particles<Dim> P;
-  P.resize(n, !like.affine[0].empty(), !like.pore_pressure.empty());
+  P.resize(n, !like.affine[0].empty(), !like.pore_pressure.empty(), !like.rest_volume.empty());
   for_each_kept_column(P, [&](const std::string& name, const char*, auto& column) {
     if (column.empty()) return;
     const auto values = file.doubles("/particles/" + name, n);

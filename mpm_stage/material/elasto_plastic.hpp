@@ -3,7 +3,9 @@
 // to the stress, plastic work. What differs is a class of the law's file:
 //
 //   struct Law {
-//     explicit Law(const MaterialConstants& k);  // once per run of particles
+//     // Once per run of particles. A law whose strength follows the plastic rate of the step itself takes its length,
+//     // `dt` (s, 0: no rate), as a second argument.
+//     explicit Law(const MaterialConstants& k);
 //     // The return of `trial` at the cohesion (Pa), without branches so that loops over particles become vector code.
 //     // `share` is that of strength.hpp, 1 at peak and 0 at residual, and counts only if the material Softens. `Real`
 //     // is one particle's number or four particles'.
@@ -16,6 +18,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "mpm_stage/material/elastic_energy.hpp"
 #include "mpm_stage/material/plane_strain.hpp"
@@ -24,6 +27,14 @@
 #include "mpm_stage/material/three_dimensions.hpp"
 
 namespace tailrun::mpm {
+
+template <class Law>
+Law law_of_step(const MaterialConstants& k, double dt) {
+  if constexpr (std::is_constructible_v<Law, const MaterialConstants&, double>)
+    return Law(k, dt);
+  else
+    return Law(k);
+}
 
 // Plane strain. What a material does not have (softening, rate terms, tension cut-off) is left out at compile time. The
 // in-plane principal stresses p +- R and zz are sorted without branches and put back by where zz stood.
@@ -35,7 +46,7 @@ double elasto_plastic_plane(const MaterialConstants& k, Particles<2>& P, std::si
   Vec4 dissipated = {};
   const Vec4 zero = {};
   const double per_dt = dt > 0.0 ? 1.0 / dt : 0.0;
-  const Law law(k);
+  const Law law = law_of_step<Law>(k, dt);
   const double shear_flexibility = 0.5 / k.mu, volume_flexibility = 1.0 / (3.0 * k.bulk);
   // In two loops over a few particles, not in one: each particle's numbers follow from one another through some 200
   // cycles, and only where the next particles' do not wait behind them is the core kept busy.
@@ -116,7 +127,7 @@ double return_to_yield(const MaterialConstants& k, const Law& law, double cohesi
 template <class Law>
 double elasto_plastic_solid(const MaterialConstants& k, Particles<3>& P, std::size_t begin, std::size_t end,
                             const double* trace, double dt) {
-  const Law law(k);
+  const Law law = law_of_step<Law>(k, dt);
   double dissipated = 0.0;
   for (std::size_t p = begin; p < end; ++p) {
     const double t = trace[p - begin];

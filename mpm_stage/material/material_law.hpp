@@ -38,6 +38,9 @@ struct MaterialLaw {
   bool moves = true;           // the front, the followed points and the criterion of rest look at it
   bool flows = false;          // phi = 0 soil and fluids: beside other soil they have a velocity field of their own
   bool keeps_surface = false;  // its surface lasts, and the stress along it: velocities may be continued beyond it
+  // Its pressure follows from its volume alone: particles remember the one that they have at no pressure, which is
+  // chosen so that they start with the stress that they are given.
+  bool keeps_rest_volume = false;
   // "residual_strength"/"factor" of the case file scales its cohesion.
   bool residual_strength = false;
 

@@ -10,6 +10,7 @@
 #define TAILRUN_MATERIAL_LAWS(law) \
   law(linear_elastic);             \
   law(mohr_coulomb);               \
+  law(mu_i);                       \
   law(tresca);                     \
   law(newtonian_fluid);            \
   law(rigid);

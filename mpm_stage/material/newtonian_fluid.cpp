@@ -2,6 +2,9 @@
 //
 //   p = K (rho / rho_0 - 1), s = -p I + 2 eta dev(D)
 //
+// rho_0 belongs to the particle: it is such that each starts with the stress that it is given (a "stress" of the case
+// file, or that of a particles file) at the mass and volume that it has. Without a stress it starts at no pressure.
+//
 // Linear in the density; Monaghan's (1994) exponent of 7 makes no difference at the small compression that is meant. K
 // need not be the fluid's own: with waves ten times as fast as the flow, density varies by about one per cent. Pressure
 // under zero is let go (allow_tension false): a fluid with a free surface comes apart.
@@ -25,7 +28,7 @@ struct Own {
 void read(const CaseNode& node, Material& m) {
   // Cure of volumetric locking.
   m.average_volumetric_strain = node.boolean_or("average_volumetric_strain", true);
-  // rho_0, at no pressure.
+  // Of particles made here; a particles file has its own masses and volumes.
   m.density = node.number("density", "kg/m3", Range::positive());
   // K.
   m.bulk_modulus = node.number("bulk_modulus", "Pa", Range::positive());
@@ -39,17 +42,26 @@ double lowest_pressure(const MaterialConstants& k) {
   return k.own.get<Own>().allow_tension ? -k.bulk : 0.0;
 }
 
+// m3 at no pressure. Particles that a scene did not make are taken at the material's density.
+template <int Dim>
+double rest_volume(const MaterialConstants& k, const Particles<Dim>& P, std::size_t p) {
+  return P.rest_volume.empty() ? P.mass[p] / k.reference_density : P.rest_volume[p];
+}
+
 double update_plane(const MaterialConstants& k, Particles<2>& P, std::size_t begin, std::size_t end,
                     const double* trace, double dt) {
   const PlaneColumns c(P, trace, begin);
   Vec4 dissipated = {};
   const double viscous = dt > 0.0 ? 2.0 * k.explicit_viscosity / dt : 0.0;
   const Vec4 low = splat(lowest_pressure(k));
+  const bool own = !P.rest_volume.empty();
+  const double* rest = own ? P.rest_volume.data() + begin : c.mass;
+  const double to_volume = own ? 1.0 : 1.0 / k.reference_density;
   for_each_group(
       0, end - begin, [&](const auto& g) __attribute__((always_inline)) {
         const Vec4 t = g.read(c.trace);
         const Vec4 growth = (1.0 + 0.25 * t) / (1.0 - 0.25 * t), volume = g.read(c.volume) * (growth * growth);
-        const Vec4 pressure = larger(low, k.bulk * (g.read(c.mass) / (volume * k.reference_density) - 1.0));
+        const Vec4 pressure = larger(low, k.bulk * (to_volume * g.read(rest) / volume - 1.0));
         const Vec4 gxx = g.read(c.gxx), gyy = g.read(c.gyy), third = (gxx + gyy) * (1.0 / 3.0);
         const Vec4 exx = gxx - third, eyy = gyy - third, exy = 0.5 * (g.read(c.gxy) + g.read(c.gyx));
         g.write(c.volume, volume);
@@ -70,7 +82,7 @@ double update_solid(const MaterialConstants& k, Particles<3>& P, std::size_t beg
     const double t = trace[p - begin];
     const Matrix3 e = deviator_of(gradient_matrix(P, p));
     P.volume[p] *= volume_ratio(t);
-    const double pressure = std::max(low, k.bulk * (P.mass[p] / (P.volume[p] * k.reference_density) - 1.0));
+    const double pressure = std::max(low, k.bulk * (rest_volume(k, P, p) / P.volume[p] - 1.0));
     const double viscous = dt > 0.0 ? 2.0 * k.explicit_viscosity / dt : 0.0;
     store(P, p, viscous * e - pressure * Matrix3::Identity());
     dissipated += viscous * e.squaredNorm() * P.volume[p];
@@ -83,7 +95,7 @@ template <int Dim>
 double stored_energy(const MaterialConstants& k, const Particles<Dim>& P, std::size_t begin, std::size_t end) {
   double energy = 0.0;
   for (std::size_t p = begin; p < end; ++p) {
-    const double whole = P.mass[p] / k.reference_density, J = P.volume[p] / whole;
+    const double whole = rest_volume(k, P, p), J = P.volume[p] / whole;
     if (J < 1.0 || k.own.get<Own>().allow_tension) energy += k.bulk * whole * (J - 1.0 - std::log(J));
   }
   return energy;
@@ -101,7 +113,7 @@ void set_constants(const Material& m, double /*cell_size*/, MaterialConstants& k
 
 namespace laws {
 extern const MaterialLaw newtonian_fluid = {
-    .name = "newtonian_fluid", .flows = true, .read = read, .set_constants = set_constants};
+    .name = "newtonian_fluid", .flows = true, .keeps_rest_volume = true, .read = read, .set_constants = set_constants};
 }
 
 }  // namespace tailrun::mpm

@@ -5,29 +5,12 @@
 #include <random>
 
 #include "common/error.hpp"
+#include "mpm_stage/scene/polygon.hpp"
 #include "mpm_stage/scene/scene.hpp"
 
 namespace tailrun::mpm {
 
 namespace {
-
-bool inside_polygon(const std::vector<double>& polygon, double x, double y) {
-  bool inside = false;
-  const std::size_t n = polygon.size() / 2;
-  for (std::size_t i = 0, j = n - 1; i < n; j = i++) {
-    const double xi = polygon[2 * i], yi = polygon[2 * i + 1], xj = polygon[2 * j], yj = polygon[2 * j + 1];
-    if ((yi > y) != (yj > y) && x < (xj - xi) * (y - yi) / (yj - yi) + xi) inside = !inside;
-  }
-  return inside;
-}
-
-double polygon_area(const std::vector<double>& polygon) {
-  double twice = 0.0;
-  const std::size_t n = polygon.size() / 2;
-  for (std::size_t i = 0, j = n - 1; i < n; j = i++)
-    twice += polygon[2 * j] * polygon[2 * i + 1] - polygon[2 * i] * polygon[2 * j + 1];
-  return 0.5 * std::fabs(twice);
-}
 
 // Initial stress, velocity field and position of what one entry of "particles" makes.
 struct Filling {
@@ -45,7 +28,63 @@ struct Filling {
   double slope = 0.0;                  // radians, of the surface, positive where it falls with x
   double shear_ratio = 0.0, k0 = 1.0;  // shear over normal stress on planes parallel to the surface
   double rotation = 0.0;               // radians, of a box about its low corner
+
+  // Whether x (m) lies in the shape, and not on its edge.
+  bool contains(const double* x, int dimension) const {
+    if (!polygon.empty()) return inside_polygon(polygon, x[0], x[1]);
+    const double c = std::cos(rotation), s = std::sin(rotation), dx = x[0] - low[0], dy = x[1] - low[1];
+    const std::array<double, 3> in = {low[0] + c * dx + s * dy, low[1] - s * dx + c * dy, x[2]};
+    for (int d = 0; d < dimension; ++d) {
+      const double edge = 1e-9 * (high[d] - low[d]);
+      if (!(in[d] > low[d] + edge && in[d] < high[d] - edge)) return false;
+    }
+    return true;
+  }
 };
+
+// A shape and the rows of the particles that it made.
+struct Filled {
+  Filling shape;
+  std::size_t begin, end;
+};
+
+// Particles of one shape inside another would be soil of twice the density. Refuses them, with the count and the place.
+void check_overlap(const CaseNode& node, const ParticleSet& set, const std::vector<Filled>& before, const Filled& now) {
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    std::size_t count = 0, place = 0;
+    const auto look = [&](const Filled& particles, const Filled& other) {
+      for (std::size_t p = particles.begin; p < particles.end; ++p) {
+        if (!other.shape.contains(&set.position[3 * p], set.dimension)) continue;
+        if (count++ == 0) place = p;
+      }
+    };
+    look(now, before[k]);
+    look(before[k], now);
+    if (count == 0) continue;
+    const double* x = &set.position[3 * place];
+    node.fail(
+        "shape",
+        fmt::format("this shape overlaps /particles/{}: {} of the {} particles of both lie in the other, the "
+                    "first at {}, and would double the density there; let the shapes meet at their edges",
+                    k, count, now.end - now.begin + before[k].end - before[k].begin, place_text(x, set.dimension)));
+  }
+}
+
+// Refuses an outline that has no one inside: mass would be that of the signed area, none for a figure of eight.
+void check_polygon(const CaseNode& node, const std::vector<double>& polygon) {
+  if (polygon.size() < 6) node.fail("points", "a polygon needs at least 3 points");
+  if (const auto crossing = polygon_crossing(polygon))
+    node.fail("points",
+              fmt::format("the polygon crosses itself: its edges from points {} and {} (counted from 0) meet at "
+                          "({:.6g}, {:.6g}) m; list the points in order around the body",
+                          crossing->first, crossing->second, crossing->point[0], crossing->point[1]));
+  const double length = polygon_perimeter(polygon);
+  if (!(polygon_area(polygon) > 1e-10 * length * length))
+    node.fail("points",
+              fmt::format("the polygon has no area: its {} points, from ({:.6g}, {:.6g}) m on, lie on a line or "
+                          "its parts turn against each other",
+                          polygon.size() / 2, polygon[0], polygon[1]));
+}
 
 Filling read_filling(const CaseNode& node, int dimension, double h, const std::array<double, 3>& origin) {
   Filling f;
@@ -53,7 +92,7 @@ Filling read_filling(const CaseNode& node, int dimension, double h, const std::a
   if (shape == "polygon") {
     if (dimension == 3) node.fail("shape", "a polygon needs dimension 2");
     f.polygon = node.table("points", "m", 2);
-    if (f.polygon.size() < 6) node.fail("points", "a polygon needs at least 3 points");
+    check_polygon(node, f.polygon);
     f.low = {f.polygon[0], f.polygon[1], 0.0};
     f.high = f.low;
     for (std::size_t i = 0; i < f.polygon.size(); ++i) {
@@ -141,8 +180,8 @@ void turn(double c, double s, Motion& m) {
         for (int l = 0; l < 3; ++l) m.gradient[3 * i + j] += Q[3 * i + k] * g[3 * k + l] * Q[3 * j + l];
 }
 
-void fill(const Filling& f, int dimension, int material, double density, const std::array<double, 3>& gravity,
-          ParticleSet& set, std::vector<double>& gradient) {
+void fill(const CaseNode& node, const Filling& f, int dimension, int material, double density,
+          const std::array<double, 3>& gravity, ParticleSet& set, std::vector<double>& gradient) {
   std::array<double, 3> size{1.0, 1.0, 1.0};
   for (int d = 0; d < dimension; ++d) size[d] = (f.high[d] - f.low[d]) / f.count[d];
   const double volume = size[0] * size[1] * size[2];
@@ -188,7 +227,15 @@ void fill(const Filling& f, int dimension, int material, double density, const s
       }
   // A polygon's particles share its exact area.
   if (!f.polygon.empty() && set.count() > first) {
-    const double scale = polygon_area(f.polygon) / (volume * static_cast<double>(set.count() - first));
+    const double area = polygon_area(f.polygon), filled = volume * static_cast<double>(set.count() - first);
+    // Both differ by what the outline cuts off of particles' squares, unless parts of the outline turn against each
+    // other.
+    if (std::fabs(filled - area) > polygon_perimeter(f.polygon) * (size[0] + size[1]))
+      node.fail("points",
+                fmt::format("the polygon overlaps or touches itself: its outline holds {:.4g} m2, the particles "
+                            "inside it {:.4g} m2; make one polygon of each part",
+                            area, filled));
+    const double scale = area / filled;
     for (std::size_t p = first; p < set.count(); ++p) {
       set.mass[p] *= scale;
       set.volume[p] *= scale;
@@ -203,6 +250,7 @@ void generate_particles(const CaseNode& root, const std::vector<Material>& mater
   set.dimension = scene.dimension;
   std::vector<std::string> names;
   for (const auto& m : materials) names.push_back(m.name);
+  std::vector<Filled> shapes;
   for (const CaseNode& node : root.list("particles")) {
     const std::string name = node.text("material");
     std::size_t material = 0;
@@ -211,8 +259,17 @@ void generate_particles(const CaseNode& root, const std::vector<Material>& mater
       node.fail("material", fmt::format("'{}' is not one of the materials ({}).{}", name, joined(names),
                                         did_you_mean(name, names)));
     if (materials[material].law->rigid) node.fail("material", "particles cannot be of a rigid material");
-    fill(read_filling(node, scene.dimension, scene.cell_size, scene.origin), scene.dimension,
-         static_cast<int>(material), materials[material].density, scene.gravity, set, scene.velocity_gradient);
+    Filled now{read_filling(node, scene.dimension, scene.cell_size, scene.origin), set.count(), 0};
+    fill(node, now.shape, scene.dimension, static_cast<int>(material), materials[material].density, scene.gravity, set,
+         scene.velocity_gradient);
+    now.end = set.count();
+    if (now.end == now.begin)
+      node.fail("shape",
+                fmt::format("no particle lies inside this shape, which is thinner than the particles' spacing of "
+                            "{:.4g} m; more points_per_cell_side or smaller cells may fill it",
+                            scene.cell_size / static_cast<double>(node.integer_or("points_per_cell_side", 1, 10, 2))));
+    check_overlap(node, set, shapes, now);
+    shapes.push_back(std::move(now));
   }
   if (set.count() == 0) root.fail("particles", "no particle lies inside the shapes given");
   set.material_names = names;

@@ -27,6 +27,7 @@ struct Particles {
   Column plastic_strain;  // 1, deviatoric: sqrt(2/3 e:e) summed over the run
   Column strength;        // Pa, cohesion (s_R for phi = 0), per particle
   Column pore_pressure;   // Pa, compression positive; empty unless a material uses it
+  Column rest_volume;     // m3, at no pressure, where MaterialLaw::keeps_rest_volume; empty unless a material uses it
   AlignedVector<std::int32_t> material;
   AlignedVector<std::int32_t> side;  // 1: on the upper side of weak soil (grid/field_sides.hpp); empty if not asked for
   AlignedVector<std::int32_t> identity;  // index in the file or list that the particles came from
@@ -45,14 +46,16 @@ struct Particles {
     action(plastic_strain);
     action(strength);
     action(pore_pressure);
+    action(rest_volume);
   }
 
-  // All columns zero, except that no memory is spent on affine velocities or pore pressures that no feature reads.
-  void resize(std::size_t n, bool with_affine, bool with_pore_pressure) {
+  // All columns zero, except that no memory is spent on what no feature reads.
+  void resize(std::size_t n, bool with_affine, bool with_pore_pressure, bool with_rest_volume = false) {
     for_each_column([n](Column& c) { c.assign(n, 0.0); });
     if (!with_affine)
       for (auto& c : affine) Column().swap(c);
     if (!with_pore_pressure) Column().swap(pore_pressure);
+    if (!with_rest_volume) Column().swap(rest_volume);
     material.assign(n, 0);
     identity.assign(n, 0);
   }

@@ -93,6 +93,12 @@ std::vector<MovingBody<3>> read_bodies(const CaseNode& root, int dimension);
 std::vector<double> assign_cohesion(const CaseFile& file, const std::vector<Material>& materials,
                                     ParticleSet& particles);
 
+// Whether the particles lie where they can be computed: on the material's side of each terrain line, and no more of
+// them in a place than it has room for. Throws InputError, or adds to the scene's remarks (placement_checks.cpp).
+void check_placement(const CaseNode& root, Scene& scene);
+// "(x, y) m" for messages.
+std::string place_text(const double* x, int dimension);
+
 // Structure of arrays for the solver, in the order of the set (identity = index). `total` materials carry total stress.
 template <int Dim>
 Particles<Dim> solver_particles(const Scene& scene);

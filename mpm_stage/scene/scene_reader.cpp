@@ -277,6 +277,7 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
   for (const auto& line : scene.terrain_lines) scene.terrain.add_line(line.points, line.friction, line.adhere);
   drop_rigid(scene);
   if (scene.particles.count() == 0) root.fail("materials", "no particle is left: all materials are rigid");
+  check_placement(root, scene);
   read_contact(root, scene);
   if (scene.solver.surface_share < 0.0) scene.solver.surface_share = default_surface_share(scene);
   scene.cohesion = assign_cohesion(file, scene.materials, scene.particles);

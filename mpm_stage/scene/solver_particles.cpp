@@ -1,15 +1,33 @@
+#include <algorithm>
+
 #include "mpm_stage/scene/scene.hpp"
 
 namespace tailrun::mpm {
 
+namespace {
+
+// What holds no shear stress at rest starts with the mean of the stress given, at the volume given. Below no pressure
+// there is none: the particle is as large as it is.
+template <int Dim>
+void start_at_mean_stress(const Material& m, Particles<Dim>& P, std::size_t p) {
+  const double pressure = std::max(0.0, -(P.stress[0][p] + P.stress[1][p] + P.stress[2][p]) / 3.0);
+  for (int c = 0; c < stress_components<Dim>; ++c) P.stress[c][p] = c < 3 ? -pressure : 0.0;
+  P.rest_volume[p] = P.volume[p] * (1.0 + pressure / m.bulk_modulus);
+}
+
+}  // namespace
+
 template <int Dim>
 Particles<Dim> solver_particles(const Scene& scene) {
   const ParticleSet& set = scene.particles;
-  bool pore = false;
-  for (const auto& m : scene.materials) pore = pore || m.pore_pressure != PorePressure::total;
+  bool pore = false, rest = false;
+  for (const auto& m : scene.materials) {
+    pore = pore || m.pore_pressure != PorePressure::total;
+    rest = rest || m.law->keeps_rest_volume;
+  }
   Particles<Dim> P;
   const TransferName transfer = scene.solver.transfer;
-  P.resize(set.count(), transfer == TransferName::apic || transfer == TransferName::aflip, pore);
+  P.resize(set.count(), transfer == TransferName::apic || transfer == TransferName::aflip, pore, rest);
   if (scene.solver.fields.by_side) P.side.assign(set.count(), 0);
   constexpr int components = stress_components<Dim>;
   for (std::size_t p = 0; p < set.count(); ++p) {
@@ -36,6 +54,8 @@ Particles<Dim> solver_particles(const Scene& scene) {
     for (int c = 0; c < components; ++c)
       P.stress[c][p] = set.effective_stress[components * p + c] - (total && c < 3 ? u : 0.0);
     if (pore) P.pore_pressure[p] = total ? 0.0 : u;
+    const Material& m = scene.materials[static_cast<std::size_t>(set.material_id[p])];
+    if (m.law->keeps_rest_volume) start_at_mean_stress(m, P, p);
   }
   return P;
 }

@@ -18,7 +18,24 @@ def surface_height(frame, x, h):
     return (frame["x"][near, 1] + 0.5 * np.sqrt(frame["volume"][near])).max() if near.any() else 0.0
 
 
+# m, front of 99.9 % of the mass by an independent MPM code (with a volume correction for soil that has opened), the same
+# constants: (transfer, cell).
+INDEPENDENT = {("aflip", 0.005): 0.512, ("apic", 0.005): 0.499, ("aflip", 0.0025): 0.544, ("apic", 0.0025): 0.553}
+
+
 def bui_2008(r):
+    """Constant friction. On a floor as rough as the bars (tan 19.8 deg = 0.36) the front is compared with an independent
+    code's on the same cells. On a floor that is rough (1.0) the surface is the experiment's, and on these cells the front
+    too; but it goes on with finer cells, for constant friction has no length (bui_mu_i has)."""
+    rows = []
+    for (transfer, h), wanted in INDEPENDENT.items():
+        scene = r.scene()
+        scene["grid"]["cell_size"] = h
+        scene["scheme"] = {"transfer": transfer}
+        scene["terrain"][0]["friction"] = 0.36
+        found = r.run(scene, f"{transfer}_{h}").front["robust_front_m"][-1]
+        rows.append((f"front, m, against an independent code's, {transfer}, {1e3 * h} mm (experiment 0.442)", found, wanted,
+                     relative(found, wanted), 0.05))
     run = r.run()
     h = r.scene()["grid"]["cell_size"]
     frame = run.frame()
@@ -26,8 +43,8 @@ def bui_2008(r):
     # The experiment's front is its last surveyed point, where 1.52 mm of material lie (a layer of particles has 1.25 mm).
     reach = np.arange(0.2, frame["x"][:, 0].max(), 0.25 * h)
     front = max(x for x in reach if surface_height(frame, x, h) >= BUI_SURFACE[-1][1])
-    return [("RMS of the free surface over 0.1 m", None, None, math.sqrt(np.mean(error**2)) / 0.1, 0.04),
-            ("front, m", front, 0.442, relative(front, 0.442), 0.04)]
+    return rows + [("RMS of the free surface over 0.1 m, rough floor, 2.5 mm", None, None, math.sqrt(np.mean(error**2)) / 0.1, 0.04),
+                   ("front against the experiment's, m, rough floor, 2.5 mm", front, 0.442, relative(front, 0.442), 0.04)]
 
 
 MARTIN_MOYCE = np.array(

@@ -16,6 +16,7 @@ import collapse
 import contact
 import elastic
 import friction
+import grains
 import pictures
 import strength
 from runner import Runner
@@ -26,14 +27,16 @@ AGAINST = {"rigid_motion": "exact", "spinning_square": "exact", "vibrating_bar":
            "mu_block": "closed form", "clay_slab": "closed form", "incline": "closed form", "incline_3d": "closed form",
            "mohr_coulomb_point": "bisection, 1e6 random trials", "strip_footing": "(2 + pi) c, Prandtl 1920",
            "vertical_cut": "3.83 c / gamma, Taylor 1937", "cohesive_block": "itself: time step, cell, energy",
-           "bingham_rest": "closed form, shallow limit", "bui_2008": "experiment, Bui et al. 2008",
+           "bingham_rest": "closed form, shallow limit", "bui_2008": "an independent MPM code; experiment, Bui et al. 2008",
            "martin_moyce": "experiment, Martin & Moyce 1952; potential flow", "column_3d": "experiments, Lube et al. 2004",
            "contact_block": "the block on rigid ground, same cell", "contact_stack": "at rest",
-           "contact_incline": "closed form", "contact_impact": "closed form, waves in bars", "weak_layer": "closed form"}
+           "contact_incline": "closed form", "contact_impact": "closed form, waves in bars", "weak_layer": "closed form",
+           "bagnold": "closed form, Bagnold's profile", "bui_mu_i": "experiment, Bui et al. 2008"}
 
 
 def check_of(name):
-    return next(getattr(module, name) for module in (elastic, friction, strength, collapse, contact) if hasattr(module, name))
+    return next(getattr(module, name) for module in (elastic, friction, strength, collapse, contact, grains)
+                if hasattr(module, name))
 
 
 def main():
