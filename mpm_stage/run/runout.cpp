@@ -152,7 +152,7 @@ class Runout {
           fmt::format("{}: no such file, so there is nothing to go on from: the run has not begun, has "
                       "reached its end, or time/checkpoint_interval is 0. Run it without --resume",
                       checkpoint_.string()));
-    RunState state = read_checkpoint<Dim>(checkpoint_, *solver_, scene_.cell_size, provenance_);
+    RunState state = read_checkpoint<Dim>(checkpoint_, *solver_, scene_, provenance_);
     record_ = state.record;
     series_ = Schedule(scene_.output.series_interval, state.series_count);
     frame_ = Schedule(scene_.output.frame_interval, state.frame_count);
