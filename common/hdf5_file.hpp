@@ -72,6 +72,7 @@ class Hdf5Reader {
   // Attributes have one value; a number is finite. Throws InputError.
   std::string text_attribute(const std::string& object, const std::string& name) const;
   double number_attribute(const std::string& object, const std::string& name) const;
+  double number_attribute_or_gap(const std::string& object, const std::string& name) const;
   const std::filesystem::path& path() const { return path_; }
   [[noreturn]] void fail(const std::string& name, const std::string& message) const;
 

@@ -233,13 +233,18 @@ std::string Hdf5Reader::text_attribute(const std::string& object, const std::str
   return value.substr(0, value.find('\0'));
 }
 
-double Hdf5Reader::number_attribute(const std::string& object, const std::string& name) const {
+double Hdf5Reader::number_attribute_or_gap(const std::string& object, const std::string& name) const {
   const Hdf5Handle attribute(single_attribute(object, name), H5Aclose);
   const Hdf5Handle type(H5Aget_type(attribute), H5Tclose);
   const H5T_class_t kind = H5Tget_class(type);
   double value = 0.0;
   if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) < 0)
     fail(object, fmt::format("attribute '{}' is not a number", name));
+  return value;
+}
+
+double Hdf5Reader::number_attribute(const std::string& object, const std::string& name) const {
+  const double value = number_attribute_or_gap(object, name);
   if (!std::isfinite(value))
     fail(object, fmt::format("attribute '{}' is {}, but a finite number is required", name, value));
   return value;

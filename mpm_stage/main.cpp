@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "common/application.hpp"
+#include "common/output_place.hpp"
 #include "mpm_stage/run/interrupt.hpp"
 #include "mpm_stage/run/runout.hpp"
 #include "mpm_stage/scene/scene.hpp"
@@ -37,6 +38,7 @@ int main(int argc, char** argv) {
   command->add_flag("--resume", control.resume,
                     "go on from the output folder's checkpoint.h5, written by the same input");
   command->callback([&] {
+    check_output_folder(output);
     const CaseFile file(case_path);
     const Scene scene = read_scene(file, particles, size);
     file.finish();

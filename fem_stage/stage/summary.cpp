@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/provenance.hpp"
+#include "common/warnings.hpp"
 
 namespace tailrun::fem {
 
@@ -21,14 +22,16 @@ Json mesh_summary(const Mesh& mesh) {
   for (const auto& [name, edges] : mesh.lines) lines[name] = edges.size();
   return {{"nodes", mesh.nodes()},         {"elements", mesh.elements()},
           {"elements_by_region", regions}, {"edges_by_line", lines},
-          {"min_scaled_jacobian", *worst}, {"min_scaled_jacobian_at_m", {centre[0], centre[1]}}};
+          {"min_scaled_jacobian", *worst}, {"min_scaled_jacobian_at_m", {centre[0], centre[1]}},
+          {"warnings", warnings()}};
 }
 
 Json geostatic_summary(const GeostaticReport& report) {
   return {
       {"elastic_residual_of_weight", report.elastic_residual},  {"switch_residual_of_weight", report.switch_residual},
       {"final_residual_of_weight", report.final_residual},      {"settlement_m", report.settlement},
-      {"largest_effective_tension_Pa", report.largest_tension}, {"seconds", report.seconds}};
+      {"largest_effective_tension_Pa", report.largest_tension}, {"seconds", report.seconds},
+      {"warnings", warnings()}};
 }
 
 Json consolidation_summary(const ConsolidationReport& report) {
@@ -48,6 +51,7 @@ Json consolidation_summary(const ConsolidationReport& report) {
                    {"step_halvings", report.counts.halvings}};
   out["seconds"] = report.wall_seconds;
   out["snapshots"] = report.snapshots;
+  out["warnings"] = warnings();
   return out;
 }
 
@@ -112,6 +116,7 @@ Json shake_summary(const Model& model, const Motion& motion, const ShakeReport& 
                             {"reason", report.window.reason},
                             {"snapshots_asked_for_s", model.options->output.snapshots}};
   out["snapshots"] = report.snapshots;
+  out["warnings"] = warnings();
   Json skipped = Json::array();
   if (model.options->shake.damping_ratio == 0.0) skipped.push_back("rayleigh_damping");
   if (!model.options->shake.large_displacement) skipped.push_back("large_displacement");

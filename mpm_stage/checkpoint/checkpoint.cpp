@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <string_view>
 
 #include "common/error.hpp"
 #include "common/file_format.hpp"
@@ -238,8 +239,11 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
                                       file.number_attribute("/numbers", "cell_size"), Dim, cell_size));
   SolverState<Dim> state;
   RunState run;
-  for_each_number(state, run,
-                  [&](const char* name, double& value) { value = file.number_attribute("/numbers", name); });
+  for_each_number(state, run, [&](const char* name, double& value) {
+    // With FMPM what the transfers cost is not known.
+    value = std::string_view(name) == "work_transfer" ? file.number_attribute_or_gap("/numbers", name)
+                                                      : file.number_attribute("/numbers", name);
+  });
   for (const char* name : {"sorts", "steps", "series_count", "frame_count"}) whole_attribute(file, "/numbers", name);
 
   // The solver's own particles say which columns there are and how many materials.
@@ -296,7 +300,7 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
   check_indices(file, "/particles/held", held, 0, static_cast<std::int64_t>(like.count()));
   state.held.assign(held.begin(), held.end());
 
-  run.ledger = read_rows(file, "/series/ledger", LedgerRow{}, false);
+  run.ledger = read_rows(file, "/series/ledger", LedgerRow{}, true);
   const auto shape = file.shape("/series/front");
   FrontRow row;
   std::size_t plain = 0;

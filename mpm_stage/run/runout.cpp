@@ -9,6 +9,7 @@
 #include "common/application.hpp"
 #include "common/error.hpp"
 #include "common/progress.hpp"
+#include "common/warnings.hpp"
 #include "mpm_stage/checkpoint/checkpoint.hpp"
 #include "mpm_stage/output/body_series.hpp"
 #include "mpm_stage/output/energy_watch.hpp"
@@ -135,6 +136,7 @@ class Runout {
     frame_.advance();
     solver_->start(until_next_event(0.0));
     record_.first_unbalanced = solver_->unbalanced_force_ratio(gravity_);
+    warn_if_unbalanced();
     ledger_.sample(0.0, *solver_, scene_.energy_growth_limit);
     front_.sample(0.0, solver_->particles());
     bodies_.sample(0.0, solver_->bodies());
@@ -144,6 +146,16 @@ class Runout {
         "{} particles in {} blocks of {} cells, first time step {:.3g} s, out-of-balance forces {:.3g} of the weight",
         solver_->particles().count(), solver_->grid().occupied(), Block<Dim>::nodes, solver_->next_dt(),
         record_.first_unbalanced);
+  }
+
+  // A state that was handed over has borne its own weight so far. Scenes made here may begin without any stress.
+  void warn_if_unbalanced() const {
+    constexpr double most = 0.5;
+    if (scene_.inputs.empty() || !(record_.first_unbalanced > most)) return;
+    add_warning(fmt::format(
+        "forces are out of balance by {:.2g} of the weight at the start (a hand-over has less than {:g}): do stresses, "
+        "pore pressures and water outside belong together, and does the ground lie where the soil ends?",
+        record_.first_unbalanced, most));
   }
 
   void resume() {

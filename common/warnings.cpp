@@ -1,0 +1,32 @@
+#include "common/warnings.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+namespace tailrun {
+namespace {
+
+std::vector<std::string>& kept() {
+  static std::vector<std::string> list;
+  return list;
+}
+
+}  // namespace
+
+void add_warning(const std::string& text) {
+  auto& list = kept();
+  if (std::find(list.begin(), list.end(), text) != list.end()) return;
+  list.push_back(text);
+  spdlog::warn("warning: {}", text);
+}
+
+const std::vector<std::string>& warnings() {
+  return kept();
+}
+
+void forget_warnings() {
+  kept().clear();
+}
+
+}  // namespace tailrun
