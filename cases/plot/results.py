@@ -28,6 +28,12 @@ def suggestion(window):
     return (show(time), "s") if time is not None else (f"none: {window.get('reason', '-')}", "")
 
 
+def warnings_of(stage, summaries):
+    """One row for each warning, however many summaries carry it."""
+    texts = dict.fromkeys(text for summary in summaries if summary for text in summary.get("warnings", []))
+    return [(stage, "WARNING", text, "") for text in texts]
+
+
 def collect(results, phase):
     """Rows (stage, what, value, unit) from the summaries and series of a case; missing ones are left out."""
     rows = []
@@ -65,4 +71,6 @@ def collect(results, phase):
         ]
         if crest[0] is not None:
             rows.insert(-3, ("MPM", "crest sinks by", show(crest[0] - crest[1] + 0.0), "m"))
+    rows += warnings_of("FEM", [mesh, chain.summary(results / "fem" / "geostatic.json"), fem])
+    rows += warnings_of("MPM", [mpm])  # those of the hand-over are among them
     return rows

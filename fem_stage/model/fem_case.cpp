@@ -202,6 +202,7 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
     out.materials.push_back(read_material(node, name));
     MaterialSetting setting;
     setting.gravity = out.gravity;
+    setting.height = 30.0;  // of a dam; the mesh is not known here
     setting.water_density = out.fluid_density;
     setting.has_water = !out.phreatic_line.empty();
     check_material(node, setting);
