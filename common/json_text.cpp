@@ -98,9 +98,9 @@ std::string words_for(const nlohmann::json::parse_error& error, const std::strin
                : "the file ends too early: a closing '}', ']' or '\"' is missing";
   const char found = text[at], before = last_before(text, at);
   if ((found == '}' || found == ']') && before == ',') return "a comma before the closing bracket; leave it out";
+  if (message.ends_with("expected '}'") || message.ends_with("expected ']'") || message.ends_with("expected end of input"))
+    return "a comma or a closing bracket is missing before what ends here, or there is one too many";
   if (found == '\'') return "a text must be in double quotes";
-  if (message.find("expected ',' or") != std::string::npos || message.find("expected end of input") != std::string::npos)
-    return fmt::format("found '{}' where a comma or a closing bracket is required", found);
   if (message.find("expected ':'") != std::string::npos || message.find("object separator") != std::string::npos)
     return fmt::format("found '{}' where the ':' after a key is required", found);
   if (message.find("object key") != std::string::npos)

@@ -38,10 +38,10 @@ int main(int argc, char** argv) {
   command->add_flag("--resume", control.resume,
                     "go on from the output folder's checkpoint.h5, written by the same input");
   command->callback([&] {
-    check_output_folder(output);
     const CaseFile file(case_path);
     const Scene scene = read_scene(file, particles, size);
     file.finish();
+    check_output_folder(output);
     echo_options(case_path.string(), file.echo());
     Provenance provenance;
     provenance.program = "mpm_stage";

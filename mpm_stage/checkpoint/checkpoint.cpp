@@ -240,9 +240,10 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
   SolverState<Dim> state;
   RunState run;
   for_each_number(state, run, [&](const char* name, double& value) {
-    // With FMPM what the transfers cost is not known.
-    value = std::string_view(name) == "work_transfer" ? file.number_attribute_or_gap("/numbers", name)
-                                                      : file.number_attribute("/numbers", name);
+    // With FMPM what transfers and impacts cost is not known.
+    const std::string_view word = name;
+    value = word == "work_transfer" || word == "work_impact" ? file.number_attribute_or_gap("/numbers", name)
+                                                             : file.number_attribute("/numbers", name);
   });
   for (const char* name : {"sorts", "steps", "series_count", "frame_count"}) whole_attribute(file, "/numbers", name);
 

@@ -153,9 +153,9 @@ void check_series(const Hdf5Reader& file, const RunState& run, const Scene& scen
               fmt::format("has {} rows, but /series/ledger has {}", run.front.size(), run.ledger.size()));
   for (std::size_t k = 0; k < run.ledger.size(); ++k) {
     const LedgerRow& r = run.ledger[k];
-    // With FMPM what the transfers cost is not known, nor what follows from it.
+    // With FMPM what transfers and impacts cost is not known, nor what follows from it.
     for (const double x : {r.kinetic, r.elastic, r.gravitational, r.work.plastic, r.work.friction, r.work.contact,
-                           r.work.damping, r.work.external, r.work.removed, r.work.pore_pressure, r.work.impact, r.mass,
+                           r.work.damping, r.work.external, r.work.removed, r.work.pore_pressure, r.mass,
                            r.momentum[0], r.momentum[1], r.momentum[2], r.angular_momentum})
       if (!std::isfinite(x)) file.fail("/series/ledger", fmt::format("row {} has a value that is not finite", k));
   }

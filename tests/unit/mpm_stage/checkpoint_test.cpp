@@ -147,10 +147,14 @@ void change(const std::filesystem::path& path, const std::string& name, hid_t ty
 }
 
 void set_number(const std::filesystem::path& path, const char* name, double value) {
-  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  const hid_t attribute = H5Aopen_by_name(file, "/numbers", name, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), group = H5Gopen2(file, "/numbers", H5P_DEFAULT);
+  H5Adelete(group, name);
+  const hid_t space = H5Screate(H5S_SCALAR);
+  const hid_t attribute = H5Acreate2(group, name, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT);
   H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value);
   H5Aclose(attribute);
+  H5Sclose(space);
+  H5Gclose(group);
   H5Fclose(file);
 }
 
@@ -170,11 +174,11 @@ TEST_CASE("a checkpoint that cannot be a state of the run is refused, with the d
     return [=] { change<std::int64_t>(checkpoint, name, H5T_NATIVE_INT64, action); };
   };
   const auto number = [&](const char* name, double value) { return [=] { set_number(checkpoint, name, value); }; };
-  const auto refused = [&](const std::function<void()>& damage, const char* what) {
+  const auto refused = [&](const std::function<void()>& damage, const std::string& what) {
     std::filesystem::copy_file(sound, checkpoint, std::filesystem::copy_options::overwrite_existing);
     damage();
     CAPTURE(what);
-    CHECK_THROWS_WITH_AS(run(folder, "out", true, 0), doctest::Contains(what), InputError);
+    CHECK_THROWS_WITH_AS(run(folder, "out", true, 0), doctest::Contains(what.c_str()), InputError);
     CHECK(std::filesystem::exists(checkpoint));
   };
   refused(doubles("/particles/position_0", [](Doubles& x) { x[7] = std::nan(""); }), "/particles/position_0");
