@@ -2,8 +2,8 @@
 // that nothing half-written ever carries it. Every dataset has a `unit` and a `description` attribute.
 //
 // What is written has checksums throughout (Fletcher32 on values, HDF5 1.10's own on headers and attributes), so that
-// one flipped bit is noticed, and no times of day, so that equal runs make equal bytes. What is read need not have them:
-// any HDF5 file of the right content will do.
+// one flipped bit is noticed, and no times of day, so that equal runs make equal bytes. What is read need not have
+// them: any HDF5 file of the right content will do.
 #pragma once
 
 #include <hdf5.h>

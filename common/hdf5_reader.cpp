@@ -11,7 +11,8 @@
 namespace tailrun {
 namespace {
 
-const char* const damaged = "cannot be read: its checksum or its structure is wrong. The file is damaged; make it again";
+const char* const damaged =
+    "cannot be read: its checksum or its structure is wrong. The file is damaged; make it again";
 
 std::string words_for(H5T_class_t kind) {
   switch (kind) {
@@ -59,8 +60,9 @@ Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) : path_(path) {
     const std::string reason = reason_of_system();
     throw InputError(
         reason.empty()
-            ? fmt::format("{}: cannot be opened as HDF5; it is truncated, damaged or still being written. Make it again.",
-                          path.string())
+            ? fmt::format(
+                  "{}: cannot be opened as HDF5; it is truncated, damaged or still being written. Make it again.",
+                  path.string())
             : fmt::format("{}: cannot be opened{}", path.string(), reason));
   }
   try {
@@ -109,8 +111,7 @@ std::vector<std::string> Hdf5Reader::members(const std::string& group) const {
   if (opened < 0 || H5Gget_info(opened, &info) < 0) fail(group, "no such group");
   std::vector<std::string> names;
   for (hsize_t i = 0; i < info.nlinks; ++i) {
-    const ssize_t length =
-        H5Lget_name_by_idx(opened, ".", H5_INDEX_NAME, H5_ITER_INC, i, nullptr, 0, H5P_DEFAULT);
+    const ssize_t length = H5Lget_name_by_idx(opened, ".", H5_INDEX_NAME, H5_ITER_INC, i, nullptr, 0, H5P_DEFAULT);
     if (length < 0) fail(group, damaged);
     std::string name(static_cast<std::size_t>(length) + 1, '\0');
     H5Lget_name_by_idx(opened, ".", H5_INDEX_NAME, H5_ITER_INC, i, name.data(), name.size(), H5P_DEFAULT);

@@ -18,8 +18,8 @@
 namespace tailrun {
 namespace {
 
-constexpr int checksummed_superblock = 2;   // the first version whose headers have checksums
-constexpr unsigned longest_probe = 120;     // s, for a file that sends the library round in circles
+constexpr int checksummed_superblock = 2;  // the first version whose headers have checksums
+constexpr unsigned longest_probe = 120;    // s, for a file that sends the library round in circles
 
 struct Visit {
   double allowed = 0.0;  // bytes
@@ -60,8 +60,7 @@ std::string problem_of_dataset(hid_t dataset, double allowed) {
   if (create < 0) return "cannot be opened; the file is damaged. Make it again";
   if (H5Pget_layout(create) == H5D_VIRTUAL)
     return "is a virtual dataset; its values must be in this file, not in others";
-  if (H5Pget_external_count(create) > 0)
-    return "has its values in an external file; they must be in this file";
+  if (H5Pget_external_count(create) > 0) return "has its values in an external file; they must be in this file";
   if (is_too_large(H5Dget_space(dataset), H5Dget_type(dataset), allowed))
     return "claims more data than the file can hold; the file is damaged. Make it again";
   return {};
@@ -74,7 +73,8 @@ herr_t visit_object(hid_t file, const char* name, const H5O_info_t* info, void* 
   if (object < 0) {
     visit.problem = "cannot be opened; the file is damaged. Make it again";
   } else if (info->type == H5O_TYPE_GROUP) {
-    if (info->rc > 1) visit.problem = fmt::format("is a group with {} names; every group must have one place", info->rc);
+    if (info->rc > 1)
+      visit.problem = fmt::format("is a group with {} names; every group must have one place", info->rc);
     hsize_t from = 0;
     if (visit.problem.empty()) H5Literate(object, H5_INDEX_NAME, H5_ITER_NATIVE, &from, visit_link, data);
   } else if (info->type == H5O_TYPE_DATASET) {
@@ -131,8 +131,7 @@ void check_structure(hid_t file, const std::filesystem::path& path) {
   std::error_code ignored;
   Visit visit;
   visit.allowed = 1100.0 * static_cast<double>(std::filesystem::file_size(path, ignored)) + 1e6;
-  const herr_t walked =
-      H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit_object, &visit, H5O_INFO_BASIC);
+  const herr_t walked = H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit_object, &visit, H5O_INFO_BASIC);
   if (!visit.problem.empty()) throw InputError(fmt::format("{}: {}", path.string(), visit.problem));
   if (walked < 0)
     throw InputError(fmt::format(

@@ -98,7 +98,8 @@ std::string words_for(const nlohmann::json::parse_error& error, const std::strin
                : "the file ends too early: a closing '}', ']' or '\"' is missing";
   const char found = text[at], before = last_before(text, at);
   if ((found == '}' || found == ']') && before == ',') return "a comma before the closing bracket; leave it out";
-  if (message.ends_with("expected '}'") || message.ends_with("expected ']'") || message.ends_with("expected end of input"))
+  if (message.ends_with("expected '}'") || message.ends_with("expected ']'") ||
+      message.ends_with("expected end of input"))
     return "a comma or a closing bracket is missing before what ends here, or there is one too many";
   if (found == '\'') return "a text must be in double quotes";
   if (message.find("expected ':'") != std::string::npos || message.find("object separator") != std::string::npos)
@@ -106,12 +107,14 @@ std::string words_for(const nlohmann::json::parse_error& error, const std::strin
   if (message.find("object key") != std::string::npos)
     return fmt::format("found '{}' where a key in double quotes is required", found);
   if (message.find("invalid literal") != std::string::npos)
-    return fmt::format("near '{}': not a number, text, true, false, null, list or object (numbers have a point, no "
-                       "comma; NaN and Infinity are not allowed)",
-                       found);
+    return fmt::format(
+        "near '{}': not a number, text, true, false, null, list or object (numbers have a point, no "
+        "comma; NaN and Infinity are not allowed)",
+        found);
   if (message.find("invalid number") != std::string::npos)
     return "not a number as JSON writes it (0.5, not .5 or 5.; no leading +)";
-  if (message.find("control character") != std::string::npos || message.find("missing closing quote") != std::string::npos)
+  if (message.find("control character") != std::string::npos ||
+      message.find("missing closing quote") != std::string::npos)
     return "a text is not closed by '\"' on its line, or holds a control character";
   const std::size_t detail = message.rfind(" - ");
   return detail == std::string::npos ? "cannot be read here" : message.substr(detail + 3);
@@ -133,8 +136,8 @@ Json parse_json(const std::filesystem::path& path, const std::string& text) {
     throw InputError(fmt::format("{}: not valid JSON: {}: {}", path.string(), line_and_column(text, error.byte),
                                  words_for(error, text)));
   } catch (const nlohmann::json::out_of_range&) {
-    throw InputError(fmt::format("{}: {}: a number beyond the range of double (1.8e308)", path.string(),
-                                 place.pointer()));
+    throw InputError(
+        fmt::format("{}: {}: a number beyond the range of double (1.8e308)", path.string(), place.pointer()));
   }
 }
 

@@ -55,8 +55,8 @@ void check_output_folder(const fs::path& folder) {
                                  fs::is_regular_file(status) ? "a file" : kind_of(status.type())));
   fs::create_directories(folder, failed);
   if (failed)
-    throw InputError(fmt::format("{}: this folder for the results cannot be made: {}", folder.string(),
-                                 failed.message()));
+    throw InputError(
+        fmt::format("{}: this folder for the results cannot be made: {}", folder.string(), failed.message()));
   require_writable(folder);
 }
 

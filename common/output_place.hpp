@@ -14,8 +14,8 @@ void check_output_file(const std::filesystem::path& path);
 // Throws InputError when `path` exists and is no regular file: what every writer asks for right before it writes.
 void require_replaceable(const std::filesystem::path& path);
 
-// Throws InputError when `folder` is empty or cannot be made or written to, ComputationError when there is no space left
-// there. Makes it.
+// Throws InputError when `folder` is empty or cannot be made or written to, ComputationError when there is no space
+// left there. Makes it.
 void check_output_folder(const std::filesystem::path& folder);
 
 // The name under which a file is written until it is complete: with the number of this process, so that two that write

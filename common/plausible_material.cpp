@@ -7,9 +7,9 @@
 namespace tailrun {
 namespace {
 
-constexpr double lightest = 30.0;             // kg/m3: below it the number is of another unit
-constexpr double heaviest = 4000.0;           // kg/m3
-constexpr double least_strength = 100.0;      // Pa
+constexpr double lightest = 30.0;              // kg/m3: below it the number is of another unit
+constexpr double heaviest = 4000.0;            // kg/m3
+constexpr double least_strength = 100.0;       // Pa
 constexpr double least_share_strength = 1e-3;  // of the soil's own weight
 constexpr double least_share_stiffness = 0.5;  // of the soil's own weight
 constexpr double least_water_stiffness = 1e7;  // Pa
@@ -19,11 +19,12 @@ constexpr double largest_factor = 10.0;
 
 void check_density(const CaseNode& node, double density, const MaterialSetting& setting) {
   if (density < lightest) {
-    const std::string guess = density < 4.0  ? fmt::format("{:g} g/cm3 are {:g} kg/m3", density, 1e3 * density)
-                              : density > 9.0 ? fmt::format("{:g} kN/m3 are {:.4g} kg/m3", density,
-                                                            1e3 * density / setting.gravity)
-                                              : std::string("is it in another unit?");
-    node.fail("density", fmt::format("found {:g} kg/m3, but no soil is lighter than {:g}; {}", density, lightest, guess));
+    const std::string guess = density < 4.0 ? fmt::format("{:g} g/cm3 are {:g} kg/m3", density, 1e3 * density)
+                              : density > 9.0
+                                  ? fmt::format("{:g} kN/m3 are {:.4g} kg/m3", density, 1e3 * density / setting.gravity)
+                                  : std::string("is it in another unit?");
+    node.fail("density",
+              fmt::format("found {:g} kg/m3, but no soil is lighter than {:g}; {}", density, lightest, guess));
   }
   if (setting.has_water && density < setting.water_density)
     node.warn("density", fmt::format("{:g} kg/m3 is less than water has ({:g}): below the phreatic line the soil would "
@@ -49,10 +50,9 @@ void check_material(const CaseNode& node, const MaterialSetting& setting) {
   const auto density = node.peek("density");
   if (density) check_density(node, *density, setting);
   const double weight = density.value_or(1800.0) * setting.gravity * setting.height;
-  if (const auto c = node.peek("cohesion");
-      c && *c > 0.0 && *c < least_strength && *c < least_share_strength * weight)
-    node.warn("cohesion", fmt::format("{:g} Pa is a thousandth of what soils have; is it {:g} kPa = {:g} Pa?", *c, *c,
-                                      1e3 * *c));
+  if (const auto c = node.peek("cohesion"); c && *c > 0.0 && *c < least_strength && *c < least_share_strength * weight)
+    node.warn("cohesion",
+              fmt::format("{:g} Pa is a thousandth of what soils have; is it {:g} kPa = {:g} Pa?", *c, *c, 1e3 * *c));
   for (const char* key : {"shear_modulus", "youngs_modulus"})
     if (const auto stiffness = node.peek(key); stiffness && *stiffness < least_share_stiffness * weight)
       node.warn(key, fmt::format("{:g} Pa is less than {:g} m of this soil weigh ({:.3g} Pa), under which it would go "
@@ -79,9 +79,10 @@ void check_factor(const CaseNode& node, const std::string& key, double factor) {
 
 void check_residual_strength(const CaseNode& node, const std::string& key, double strength) {
   if (strength > 0.0 && strength < least_strength)
-    node.warn(key, fmt::format("{:g} Pa is a thousandth of what liquefied soils have (1 to 50 kPa); is it {:g} kPa = {:g} "
-                               "Pa?",
-                               strength, strength, 1e3 * strength));
+    node.warn(key,
+              fmt::format("{:g} Pa is a thousandth of what liquefied soils have (1 to 50 kPa); is it {:g} kPa = {:g} "
+                          "Pa?",
+                          strength, strength, 1e3 * strength));
 }
 
 }  // namespace tailrun

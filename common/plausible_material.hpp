@@ -17,7 +17,8 @@ struct MaterialSetting {
 };
 
 // One entry of "materials". Keys, as far as they are there, and their reasons:
-//   density          under 30: g/cm3 or kN/m3 (error). Under water's, where there is water, the soil would float and its
+//   density          under 30: g/cm3 or kN/m3 (error). Under water's, where there is water, the soil would float and
+//   its
 //                    effective stress be a tension; beyond 4000 no soil or rock of a dam is
 //   cohesion         above 0 and under both 100 Pa and a thousandth of the soil's weight: kPa
 //   shear_modulus, youngs_modulus

@@ -14,14 +14,14 @@
 namespace tailrun {
 namespace {
 
-constexpr double lightest = 30.0;               // kg/m3
-constexpr double share_in_tension = 0.01;       // from here on a warning
-constexpr double share_off = 0.1;               // of densities and r_u
+constexpr double lightest = 30.0;          // kg/m3
+constexpr double share_in_tension = 0.01;  // from here on a warning
+constexpr double share_off = 0.1;          // of densities and r_u
 constexpr double half = 0.5;
 constexpr std::array<double, 2> ratio_range = {-0.5, 1.2};  // of r_u
 constexpr double doubtful_factor = 2.0, impossible_factor = 10.0;
-constexpr double saturated_above = 300.0;       // Pa
-constexpr double least_sum = 1.0;               // Pa, below which there is no weight to compare with
+constexpr double saturated_above = 300.0;  // Pa
+constexpr double least_sum = 1.0;          // Pa, below which there is no weight to compare with
 
 // Those for which `is_off` holds: how many, and the worst of them by `badness`.
 struct Found {
@@ -57,12 +57,16 @@ std::string where(const StateColumns& s, const Found& found, double scale, const
 
 // What unit a stress is likely in that is `ratio` times what it should be in Pa.
 std::string likely_unit(double ratio) {
-  static const std::vector<std::pair<double, std::string>> units = {
-      {1e-3, "kPa were taken for Pa"},       {1e-6, "MPa were taken for Pa"},
-      {1.0 / 47.88, "psf were taken for Pa"}, {1.0 / 6894.8, "psi were taken for Pa"},
-      {1.0 / 47880.0, "ksf were taken for Pa"}, {1e-5, "bar were taken for Pa"},
-      {1.0 / 9806.65, "t/m2 were taken for Pa"}, {1.0 / 98066.5, "kgf/cm2 were taken for Pa"},
-      {1e3, "Pa were taken for kPa"},        {1e6, "Pa were taken for MPa"}};
+  static const std::vector<std::pair<double, std::string>> units = {{1e-3, "kPa were taken for Pa"},
+                                                                    {1e-6, "MPa were taken for Pa"},
+                                                                    {1.0 / 47.88, "psf were taken for Pa"},
+                                                                    {1.0 / 6894.8, "psi were taken for Pa"},
+                                                                    {1.0 / 47880.0, "ksf were taken for Pa"},
+                                                                    {1e-5, "bar were taken for Pa"},
+                                                                    {1.0 / 9806.65, "t/m2 were taken for Pa"},
+                                                                    {1.0 / 98066.5, "kgf/cm2 were taken for Pa"},
+                                                                    {1e3, "Pa were taken for kPa"},
+                                                                    {1e6, "Pa were taken for MPa"}};
   std::string best;
   double least = 0.35;  // of a natural logarithm: 1.4 times either way
   for (const auto& [factor, words] : units)
@@ -96,9 +100,10 @@ void check_tension(const StateColumns& s) {
       fmt::format("{}: sigma'_v0, the vertical effective stress before shaking, is not a compression in {}", s.file,
                   where(s, tension, 1e-3, " kPa"));
   if (tension.share() > half)
-    throw InputError(words +
-                     "; most likely the sign of the stresses (tension positive or compression positive), or water whose "
-                     "weight is not on the ground: below the phreatic line soil and water together weigh more than water");
+    throw InputError(
+        words +
+        "; most likely the sign of the stresses (tension positive or compression positive), or water whose "
+        "weight is not on the ground: below the phreatic line soil and water together weigh more than water");
   add_warning(words);
 }
 
@@ -116,7 +121,8 @@ void check_weight(const StateColumns& s) {
   if (ratio <= 0.0) throw InputError(words + "; most likely the sign of the stresses or of the pore pressures");
   if (ratio > impossible_factor || ratio < 1.0 / impossible_factor)
     throw InputError(fmt::format("{}; {}", words, likely_unit(ratio)));
-  if (ratio > doubtful_factor || ratio < 1.0 / doubtful_factor) add_warning(fmt::format("{}; are its units and signs right?", words));
+  if (ratio > doubtful_factor || ratio < 1.0 / doubtful_factor)
+    add_warning(fmt::format("{}; are its units and signs right?", words));
 }
 
 void check_pressure(const StateColumns& s) {
@@ -129,28 +135,30 @@ void check_pressure(const StateColumns& s) {
   if (at_rest <= 0.0) return;
   const double ratio = pressure / at_rest;
   if (ratio < 0.0)
-    add_warning(fmt::format("{}: the initial pore pressure below the phreatic line is a suction ({:.3g} times that of "
-                            "water at rest); most likely its sign (compression is positive)",
-                            s.file, ratio));
+    add_warning(
+        fmt::format("{}: the initial pore pressure below the phreatic line is a suction ({:.3g} times that of "
+                    "water at rest); most likely its sign (compression is positive)",
+                    s.file, ratio));
   else if (ratio != 0.0 && ratio < 0.01)
-    add_warning(fmt::format("{}: the initial pore pressure below the phreatic line is {:.3g} times that of water at rest; {}",
-                            s.file, ratio, likely_unit(ratio)));
+    add_warning(
+        fmt::format("{}: the initial pore pressure below the phreatic line is {:.3g} times that of water at rest; {}",
+                    s.file, ratio, likely_unit(ratio)));
 }
 
 void check_ratio(const StateColumns& s) {
   const auto all = [](std::size_t) { return true; };
-  const Found off = find(s.pressure_ratio, all,
-                         [](double r) { return std::max(ratio_range[0] - r, r - ratio_range[1]); });
+  const Found off =
+      find(s.pressure_ratio, all, [](double r) { return std::max(ratio_range[0] - r, r - ratio_range[1]); });
   if (off.share() > share_off)
-    add_warning(fmt::format("{}: r_u is outside of [{:g}, {:g}] in {}; are the sign and the unit of the pore pressures right?",
-                            s.file, ratio_range[0], ratio_range[1], where(s, off, 1.0, "")));
+    add_warning(
+        fmt::format("{}: r_u is outside of [{:g}, {:g}] in {}; are the sign and the unit of the pore pressures right?",
+                    s.file, ratio_range[0], ratio_range[1], where(s, off, 1.0, "")));
 }
 
 double elevation(const std::vector<double>& line, double x) {
   if (x <= line[0]) return line[1];
   for (std::size_t i = 2; i + 1 < line.size(); i += 2)
-    if (x <= line[i])
-      return line[i - 1] + (line[i + 1] - line[i - 1]) * (x - line[i - 2]) / (line[i] - line[i - 2]);
+    if (x <= line[i]) return line[i - 1] + (line[i + 1] - line[i - 1]) * (x - line[i - 2]) / (line[i] - line[i - 2]);
   return line[line.size() - 1];
 }
 
@@ -164,7 +172,8 @@ void check_state(const StateColumns& state) {
   check_ratio(state);
 }
 
-StateColumns columns_of(const Snapshot& snapshot, const std::string& file, const std::vector<bool>& kept, bool weights) {
+StateColumns columns_of(const Snapshot& snapshot, const std::string& file, const std::vector<bool>& kept,
+                        bool weights) {
   StateColumns s;
   s.file = file;
   s.what = "elements";

@@ -12,23 +12,24 @@ namespace tailrun {
 
 // Columns over elements or particles; those that are not known are empty.
 struct StateColumns {
-  std::string file, what;                     // "snapshot.h5", "elements": for messages
-  std::vector<double> x, y;                   // m
-  std::vector<double> vertical_effective;     // Pa, sigma'_v0, compression positive
-  std::vector<double> pressure_ratio;         // r_u
-  std::vector<double> density;                // kg/m3
-  std::vector<double> total_vertical;         // Pa, compression positive
-  std::vector<double> weight_above;           // Pa, of soil, and of water standing on it
-  std::vector<double> pore_pressure;          // Pa
-  std::vector<double> hydrostatic;            // Pa, below the phreatic line; empty without one
-  double water_density = 1000.0;              // kg/m3
+  std::string file, what;                  // "snapshot.h5", "elements": for messages
+  std::vector<double> x, y;                // m
+  std::vector<double> vertical_effective;  // Pa, sigma'_v0, compression positive
+  std::vector<double> pressure_ratio;      // r_u
+  std::vector<double> density;             // kg/m3
+  std::vector<double> total_vertical;      // Pa, compression positive
+  std::vector<double> weight_above;        // Pa, of soil, and of water standing on it
+  std::vector<double> pore_pressure;       // Pa
+  std::vector<double> hydrostatic;         // Pa, below the phreatic line; empty without one
+  double water_density = 1000.0;           // kg/m3
 };
 
 // In the order of the checks, with their reasons:
 //   density under 30 kg/m3: g/cm3 or kN/m3 (error); under water's in a tenth of all saturated: would float (warning)
 //   sigma'_v0 <= 0: soil carries no tension. Beyond a hundredth of all a warning; of more than half an error, for which
 //     the sign is the likely reason
-//   total vertical stress against the weight above, summed: an arch or a slope moves it by tens of per cent. Off by more
+//   total vertical stress against the weight above, summed: an arch or a slope moves it by tens of per cent. Off by
+//   more
 //     than 2 a warning, by more than 10 an error, with the unit whose factor fits
 //   pore pressure against that of water at rest below the phreatic line, summed: under a hundredth, kPa (warning)
 //   r_u outside [-0.5, 1.2]: dilation and what flows in pass that here and there. Beyond a tenth of all a warning

@@ -57,9 +57,9 @@ void warn_about(const Snapshot& snapshot, const TransferCase& wanted, const std:
         points.capped_elements, wanted.sampling.cell_size));
   for (std::size_t e = 0; e < snapshot.elements(); ++e)
     if (kept[e] && snapshot.thickness[e] != 1.0) {
-      add_warning(fmt::format("region '{}' has a thickness of {:g} m; its particles are per metre of thickness all the same",
-                              snapshot.region_names[static_cast<std::size_t>(snapshot.region_id[e])],
-                              snapshot.thickness[e]));
+      add_warning(
+          fmt::format("region '{}' has a thickness of {:g} m; its particles are per metre of thickness all the same",
+                      snapshot.region_names[static_cast<std::size_t>(snapshot.region_id[e])], snapshot.thickness[e]));
       break;
     }
 }

@@ -132,8 +132,7 @@ std::vector<Row> read_rows(const Hdf5Reader& file, const std::string& name, cons
   std::size_t width = 0;
   Row row = like;
   for_each_value(row, [&](double) { ++width; });
-  const std::vector<double> values =
-      gaps ? file.doubles_or_gaps(name, 0, width) : file.doubles(name, 0, width);
+  const std::vector<double> values = gaps ? file.doubles_or_gaps(name, 0, width) : file.doubles(name, 0, width);
   std::vector<Row> rows(values.size() / width, like);
   std::size_t k = 0;
   for (Row& r : rows) for_each_value(r, [&](double& x) { x = values[k++]; });
@@ -306,7 +305,8 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
   FrontRow row;
   std::size_t plain = 0;
   for_each_value(row, [&](double) { ++plain; });
-  if (shape.size() != 2 || shape[1] < plain || (shape[1] - plain) % 2 != 0) file.fail("/series/front", "has too few columns");
+  if (shape.size() != 2 || shape[1] < plain || (shape[1] - plain) % 2 != 0)
+    file.fail("/series/front", "has too few columns");
   row.points.resize(shape[1] - plain);
   run.front = read_rows(file, "/series/front", row, true);
   state.bodies = solver.bodies();
@@ -324,8 +324,8 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
   run.frame_names = file.texts("/series/frame_names");
   run.frame_times = file.doubles("/series/frame_times", 0, 1);
   if (run.frame_times.size() != run.frame_names.size())
-    file.fail("/series/frame_times", fmt::format("has {} rows, but there are {} names of frames", run.frame_times.size(),
-                                                 run.frame_names.size()));
+    file.fail("/series/frame_times", fmt::format("has {} rows, but there are {} names of frames",
+                                                 run.frame_times.size(), run.frame_names.size()));
   check_particles<Dim>(file, P, like, state.removed);
   check_blocks<Dim>(file, state, P, scene, solver.grid().origin());
   check_state<Dim>(file, state, scene);

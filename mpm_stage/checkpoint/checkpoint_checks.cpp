@@ -155,8 +155,8 @@ void check_series(const Hdf5Reader& file, const RunState& run, const Scene& scen
     const LedgerRow& r = run.ledger[k];
     // With FMPM what transfers and impacts cost is not known, nor what follows from it.
     for (const double x : {r.kinetic, r.elastic, r.gravitational, r.work.plastic, r.work.friction, r.work.contact,
-                           r.work.damping, r.work.external, r.work.removed, r.work.pore_pressure, r.mass,
-                           r.momentum[0], r.momentum[1], r.momentum[2], r.angular_momentum})
+                           r.work.damping, r.work.external, r.work.removed, r.work.pore_pressure, r.mass, r.momentum[0],
+                           r.momentum[1], r.momentum[2], r.angular_momentum})
       if (!std::isfinite(x)) file.fail("/series/ledger", fmt::format("row {} has a value that is not finite", k));
   }
   const std::size_t points = std::max<std::size_t>(scene.output.points.size(), 1);
@@ -165,8 +165,8 @@ void check_series(const Hdf5Reader& file, const RunState& run, const Scene& scen
     if (r.points.size() != 2 * points)
       file.fail("/series/front", fmt::format("follows {} points, but the case {}", r.points.size() / 2, points));
     // Only the front of what has flowed, and points that have left, may be unknown.
-    for (const double x : {r.front, r.robust_front, r.flowed_mass, r.top, r.centre_x, r.centre_y, r.rms_speed,
-                           r.maximum_speed})
+    for (const double x :
+         {r.front, r.robust_front, r.flowed_mass, r.top, r.centre_x, r.centre_y, r.rms_speed, r.maximum_speed})
       if (!std::isfinite(x)) file.fail("/series/front", fmt::format("row {} has a value that is not finite", k));
   }
   if (!run.bodies.empty()) check_times(file, "/series/bodies", run.bodies, time);

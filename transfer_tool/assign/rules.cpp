@@ -220,10 +220,10 @@ Assignment assign(const Snapshot& snapshot, const SamplePoints& points, const Po
     for (const auto& warning : rules[r].strength->warnings)
       result.warnings.push_back(fmt::format("rule {} ({}): {}", r, rules[r].strength->model, warning));
     if (2 * tally.raised > tally.count)
-      result.warnings.push_back(
-          fmt::format("rule {} ({}): {} of {} points have so little strength that it was raised to the lower bound; are "
-                      "strengths and stresses in Pa?",
-                      r, rules[r].strength->model, tally.raised, tally.count));
+      result.warnings.push_back(fmt::format(
+          "rule {} ({}): {} of {} points have so little strength that it was raised to the lower bound; are "
+          "strengths and stresses in Pa?",
+          r, rules[r].strength->model, tally.raised, tally.count));
     if (tally.outside > 0)
       result.warnings.push_back(fmt::format(
           "rule {} ({}): {} of {} points have sigma'_v0 outside of {:g} to {:g} kPa", r, rules[r].strength->model,

@@ -134,8 +134,9 @@ CsvTable::CsvTable(const std::filesystem::path& path) : path_(path) {
     }
     for (const Column& other : columns_)
       if (other.name == column.name)
-        throw InputError(fmt::format("{}: line 1: columns '{}' and '{}' are the same quantity; keep the one that is meant",
-                                     path.string(), other.header, column.header));
+        throw InputError(
+            fmt::format("{}: line 1: columns '{}' and '{}' are the same quantity; keep the one that is meant",
+                        path.string(), other.header, column.header));
     columns_.push_back(std::move(column));
   }
   for (std::size_t number = 2; std::getline(stream, line); ++number) {
@@ -246,9 +247,10 @@ void CsvTable::finish(const std::vector<std::string>& ignored) const {
       if (!hint.empty()) break;
     }
     if (hint.empty()) hint = did_you_mean(lower, {asked_.begin(), asked_.end()});
-    throw InputError(fmt::format("{}: line 1: unknown column '{}'.{} Known here: {} (import.json's 'ignore_columns' "
-                                 "names those to leave out)",
-                                 path_.string(), column.header, hint, joined({asked_.begin(), asked_.end()})));
+    throw InputError(
+        fmt::format("{}: line 1: unknown column '{}'.{} Known here: {} (import.json's 'ignore_columns' "
+                    "names those to leave out)",
+                    path_.string(), column.header, hint, joined({asked_.begin(), asked_.end()})));
   }
 }
 

@@ -67,8 +67,7 @@ std::vector<double> interleaved(const std::vector<double>& x, const std::vector<
 void read_mesh(const CaseNode& root, const std::vector<std::string>& ignored, Snapshot& snapshot, Numbers& nodes,
                Numbers& elements) {
   CsvTable node_table(root.file("nodes")), quad_table(root.file("quads"));
-  snapshot.position =
-      interleaved(node_table.numbers("x", Quantity::length), node_table.numbers("y", Quantity::length));
+  snapshot.position = interleaved(node_table.numbers("x", Quantity::length), node_table.numbers("y", Quantity::length));
   nodes = numbering(node_table, "node");
   elements = numbering(quad_table, "element");
   snapshot.thickness = quad_table.numbers_or("thickness", Quantity::length, 1.0);
@@ -160,8 +159,8 @@ void set_base_velocity(const CaseNode& root, Snapshot& snapshot) {
   for (const auto& line : snapshot.lines)
     if (!line.edges.empty()) names.push_back(line.name);
   if (given && std::find(names.begin(), names.end(), name) == names.end())
-    root.fail("base_line", fmt::format("no edge of the mesh lies on a line '{}'.{} Lines of the table 'nodes': {}", name,
-                                       did_you_mean(name, names), names.empty() ? "none" : joined(names)));
+    root.fail("base_line", fmt::format("no edge of the mesh lies on a line '{}'.{} Lines of the table 'nodes': {}",
+                                       name, did_you_mean(name, names), names.empty() ? "none" : joined(names)));
   for (const auto& line : snapshot.lines) {
     if (line.name != name) continue;
     std::vector<std::int64_t> nodes = line.edges;

@@ -135,8 +135,8 @@ FileReport read_file_report(const std::filesystem::path& path) {
   report.kind = file.text_attribute("/tailrun", "format");
   const double format_version = file.number_attribute("/tailrun", "format_version");
   if (format_version != std::floor(format_version) || std::abs(format_version) > 1e6)
-    file.fail("/tailrun", fmt::format("attribute 'format_version' is {:g}, but a whole number is required",
-                                      format_version));
+    file.fail("/tailrun",
+              fmt::format("attribute 'format_version' is {:g}, but a whole number is required", format_version));
   report.format_version = static_cast<int>(format_version);
   for (const char* name :
        {"time_s", "transfer_time_s", "dimension", "particle_size_m", "gravity_m_s2", "fluid_density_kg_m3", "step"})

@@ -36,8 +36,8 @@ void group(hid_t file, const char* name) {
 
 void dataset(hid_t file, const char* name, hid_t type, const std::vector<hsize_t>& shape, const void* values = nullptr,
              hid_t create = H5P_DEFAULT) {
-  const hid_t space = shape.empty() ? H5Screate(H5S_SCALAR)
-                                    : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
+  const hid_t space =
+      shape.empty() ? H5Screate(H5S_SCALAR) : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr);
   const hid_t made = H5Dcreate2(file, name, type, space, H5P_DEFAULT, create, H5P_DEFAULT);
   if (values) H5Dwrite(made, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
   H5Dclose(made);
@@ -91,10 +91,12 @@ TEST_CASE("links that lead in circles or out of the file are refused when it is 
           group(file, "/a");
           H5Lcreate_hard(file, "/", file, "/a/top", H5P_DEFAULT, H5P_DEFAULT);
         }).find("names; every group must have one place") != std::string::npos);
-  CHECK(refused([](hid_t file) { H5Lcreate_soft("/b", file, "b", H5P_DEFAULT, H5P_DEFAULT); })
-            .find("'b' is a soft link") != std::string::npos);
-  CHECK(refused([](hid_t file) { H5Lcreate_external("other.h5", "/x", file, "x", H5P_DEFAULT, H5P_DEFAULT); })
-            .find("'x' is an external link") != std::string::npos);
+  CHECK(refused([](hid_t file) {
+          H5Lcreate_soft("/b", file, "b", H5P_DEFAULT, H5P_DEFAULT);
+        }).find("'b' is a soft link") != std::string::npos);
+  CHECK(refused([](hid_t file) {
+          H5Lcreate_external("other.h5", "/x", file, "x", H5P_DEFAULT, H5P_DEFAULT);
+        }).find("'x' is an external link") != std::string::npos);
   CHECK(refused([](hid_t file) {
           const hid_t create = H5Pcreate(H5P_DATASET_CREATE);
           H5Pset_external(create, "/etc/passwd", 0, 80);

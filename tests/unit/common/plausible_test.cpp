@@ -64,7 +64,8 @@ std::string said_of(const Snapshot& snapshot) {
 TEST_CASE("materials in another unit") {
   MaterialSetting wet;
   wet.has_water = true;
-  CHECK(said_of_material(R"("density": 1900, "cohesion": 15000, "shear_modulus": 4e7, "friction_angle": 33)", wet) == "");
+  CHECK(said_of_material(R"("density": 1900, "cohesion": 15000, "shear_modulus": 4e7, "friction_angle": 33)", wet) ==
+        "");
   CHECK(said_of_material(R"("density": 1900, "cohesion": 0, "G0": 476)", wet) == "");
   CHECK(contains(said_of_material(R"("density": 1.9)"), "1.9 g/cm3 are 1900 kg/m3"));
   CHECK(said_of_material(R"("density": 1.9)").starts_with("error: "));

@@ -91,9 +91,10 @@ TEST_CASE("faults in the tables are named with file, line and column") {
 
 TEST_CASE("columns are converted by their header, in whichever form it names the unit") {
   const Tables tables;
-  tables.folder.write("node_state.csv",
-                      "\xEF\xBB\xBFnode,ux_mm,vx [cm/s],vy_ft_s,p (psi)\r\n11,+1,50,0,1\r\n12,1,50,0,1\r\n13,1,80,0,1\r\n"
-                      "14,+1.0E+00,100,1,1\r\n15,1,100,0,1\r\n16,1,100,0,1\r\n");
+  tables.folder.write(
+      "node_state.csv",
+      "\xEF\xBB\xBFnode,ux_mm,vx [cm/s],vy_ft_s,p (psi)\r\n11,+1,50,0,1\r\n12,1,50,0,1\r\n13,1,80,0,1\r\n"
+      "14,+1.0E+00,100,1,1\r\n15,1,100,0,1\r\n16,1,100,0,1\r\n");
   const auto snapshot = tables.snapshot();
   CHECK(snapshot.displacement[0] == doctest::Approx(1e-3));
   CHECK(snapshot.velocity[0] == doctest::Approx(0.5));
