@@ -6,8 +6,8 @@
 // as the shear stress reaches what it carries.
 //
 // Bodies i and j at a node, with velocities after forces and body acceleration and n from the centre of i to that of j:
-// the approach (v_i - v_j) . n is stopped, their sliding is braked by at most
-//   dt A min(s_i, s_j) + mu J,
+// the approach (v_i - v_j) . n is stopped, their sliding is braked (field_friction.hpp) by at most
+//   min(dt A min(s_i, s_j), mu J)
 // where A is the part of the surface that is the node's (the larger of the two bodies' G . n, interface_sums.hpp:
 // beside a layer thinner than the node's reach, only the other one shows it whole), s the shear stress that the soil
 // carries and J the normal impulse. Impulses act on both, so momentum is exact, and each takes kinetic energy.
@@ -16,7 +16,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
+#include "mpm_stage/boundary/field_friction.hpp"
 #include "mpm_stage/boundary/half_spaces.hpp"
 #include "mpm_stage/boundary/soil_limit.hpp"
 #include "mpm_stage/grid/field_choice.hpp"
@@ -40,6 +42,14 @@ constexpr double open_gap = 0.15;
 // whose surface is 0.7 cells away lies there.
 constexpr double rim = 0.9;
 
+// The surface of a field at a node and those around it: sums of G and of its size, nearer nodes counting more. A single
+// node's G wobbles with the particles' places, and bodies would slide as over a washboard.
+template <int Dim>
+struct SurfaceAround {
+  std::array<double, Dim> outward{};  // m2
+  double faces = 0.0;                 // m2
+};
+
 // One field, or several that move as one, at a node.
 template <int Dim>
 struct BodyAtNode {
@@ -49,9 +59,17 @@ struct BodyAtNode {
   double volume = 0.0;    // m3
   Vector centre{};        // m, from the node
   Vector surface{};       // m2, G
+  Vector outward{};       // m2, sum of G of the nodes around: the direction that the surface faces
+  double faces = 0.0;     // m2, sum of their |G|
   double strength = 0.0;  // Pa
   bool firm = false;      // soil that does not flow: its particles show its surface best
 
+  // 1 where the surface around the node is a plane, less at corners and of thin plates.
+  double plainness() const {
+    double square = 0.0;
+    for (const double x : outward) square += x * x;
+    return faces > 0.0 ? std::sqrt(square) / faces : 0.0;
+  }
   void add(const BodyAtNode& o) {
     const double m = mass + o.mass, V = volume + o.volume;
     for (int d = 0; d < Dim; ++d) {
@@ -59,7 +77,9 @@ struct BodyAtNode {
       before[d] = (mass * before[d] + o.mass * o.before[d]) / m;
       centre[d] = (volume * centre[d] + o.volume * o.centre[d]) / V;
       surface[d] += o.surface[d];
+      outward[d] += o.outward[d];
     }
+    faces += o.faces;
     strength = (volume * strength + o.volume * o.strength) / V;
     mass = m;
     volume = V;
@@ -67,23 +87,18 @@ struct BodyAtNode {
 };
 
 template <int Dim>
-BodyAtNode<Dim> body_at_node(double mass, const InterfaceNode& sums) {
+BodyAtNode<Dim> body_at_node(double mass, const InterfaceNode& sums, const SurfaceAround<Dim>& around) {
   BodyAtNode<Dim> body;
   body.mass = mass;
   body.volume = sums.first[0];
   body.strength = sums.second[0] / body.volume;
+  body.faces = around.faces;
   for (int d = 0; d < Dim; ++d) {
     body.centre[d] = sums.first[1 + d] / body.volume;
     body.surface[d] = sums.second[1 + d];
+    body.outward[d] = around.outward[d];
   }
   return body;
-}
-
-template <int Dim>
-double along(const std::array<double, Dim>& a, const std::array<double, Dim>& b) {
-  double sum = 0.0;
-  for (int d = 0; d < Dim; ++d) sum += a[d] * b[d];
-  return sum;
 }
 
 // What contact does between two bodies of a node, worked out once and used in each round.
@@ -106,9 +121,9 @@ class ContactPair {
     if (mixed_) return;
     for (double& x : n_) x /= distance;
     // Soil that flows opens and crowds, and its centre with it: soil that does not shows the surface better, of two
-    // such bodies the one that is more like a half-space (a corner of the other is none).
-    const bool of_i = i.firm && (!j.firm || flatness(i, half, h) >= flatness(j, half, h));
-    if (i.firm || j.firm) take_normal_of(of_i ? i.surface : j.surface, of_i ? 1.0 : -1.0);
+    // such bodies the one whose surface is the plainer (a corner of the other is none).
+    const bool of_i = i.firm && (!j.firm || i.plainness() >= j.plainness());
+    if (i.firm || j.firm) take_normal_of(of_i ? i.outward : j.outward, of_i ? 1.0 : -1.0);
     // Inside soil that flows, the node's velocity differs from that of the surface by what the soil strains in between;
     // what is there of the firm body is the rim of its reach, and must not be taken along.
     if (i.firm != j.firm) presses_ = std::fabs(along<Dim>(i.firm ? i.centre : j.centre, n_)) <= rim * h;
@@ -133,24 +148,25 @@ class ContactPair {
     return std::fabs(change);
   }
 
-  // Brakes the sliding. Returns the work that it takes, J: the impulse times the sliding that is left.
-  double rub() {
-    std::array<double, Dim> slide;
-    for (int d = 0; d < Dim; ++d) slide[d] = i_->v[d] - j_->v[d];
-    if (mixed_) {
-      push(slide, reduced_);
-      return 0.0;
+  // Soils mixed through each other move as one. Whether these are, and do now.
+  bool join() {
+    if (!mixed_) return false;
+    for (int d = 0; d < Dim; ++d) {
+      const double together = (i_->mass * i_->v[d] + j_->mass * j_->v[d]) / (i_->mass + j_->mass);
+      i_->v[d] = j_->v[d] = together;
     }
-    if (!touches_ && normal_ <= 0.0) return 0.0;
-    const double across = along<Dim>(slide, n_);
-    for (int d = 0; d < Dim; ++d) slide[d] -= across * n_[d];
-    const double speed = std::sqrt(along<Dim>(slide, slide));
-    if (speed <= 0.0) return 0.0;
-    double most = cohesive_;
-    if (law_.friction >= 0.0) most = std::min(cohesive_, law_.friction * std::max(0.0, normal_));
-    const double impulse = std::min(reduced_ * speed, most);
-    push(slide, impulse / speed);
-    return impulse * std::max(0.0, speed - impulse / reduced_);
+    return true;
+  }
+
+  // What brakes their sliding; nothing, with mass 0, where they do not touch.
+  FieldGrip<Dim> grip() const {
+    FieldGrip<Dim> grip;
+    if (mixed_ || (!touches_ && normal_ <= 0.0)) return grip;
+    grip.mass = {i_->mass, j_->mass};
+    grip.normal = n_;
+    grip.carried = cohesive_;
+    grip.friction = law_.friction >= 0.0 ? law_.friction * std::max(0.0, normal_) : no_soil_limit;
+    return grip;
   }
 
  private:
@@ -194,13 +210,20 @@ class ContactPair {
 template <int Dim>
 class ContactPairs {
  public:
-  void add(const ContactPair<Dim>& pair) { pairs_[count_++] = pair; }
+  // Of the node's bodies i and j.
+  void add(const ContactPair<Dim>& pair, int i, int j) {
+    bodies_[count_] = {i, j};
+    pairs_[count_++] = pair;
+  }
   int count() const { return count_; }
+  std::pair<int, int> bodies(int k) const { return bodies_[k]; }
+  const ContactPair<Dim>& operator[](int k) const { return pairs_[k]; }
   ContactPair<Dim>* begin() { return pairs_.data(); }
   ContactPair<Dim>* end() { return pairs_.data() + count_; }
 
  private:
-  std::array<ContactPair<Dim>, most_fields*(most_fields - 1) / 2> pairs_;
+  std::array<ContactPair<Dim>, pairs_of(most_fields)> pairs_;
+  std::array<std::pair<int, int>, pairs_of(most_fields)> bodies_;
   int count_ = 0;
 };
 

@@ -194,9 +194,11 @@ void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, do
   if (!state.grip.blocks.empty()) {
     std::vector<std::int64_t> gripping;
     for (const auto& index : state.grip.blocks) gripping.insert(gripping.end(), index.begin(), index.end());
-    file.write("/grid/grip_blocks", std::span<const std::int64_t>(gripping), Dim, "1", "blocks that touch the ground");
+    file.write("/grid/grip_blocks", std::span<const std::int64_t>(gripping), Dim, "1",
+               "blocks in which material touches the ground or another field's");
     const std::vector<std::int64_t> fields(state.grip.fields.begin(), state.grip.fields.end());
-    file.write("/grid/grip_fields", std::span<const std::int64_t>(fields), 0, "1", "velocity field of each");
+    file.write("/grid/grip_fields", std::span<const std::int64_t>(fields), 0, "1",
+               "velocity field of each, or 4 and more: pair of fields");
     file.write("/grid/grip", state.grip.smoothed, Block<Dim>::nodes, "m/s2",
                "smoothed friction per mass of their nodes");
   }
@@ -285,7 +287,7 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
     state.grip.blocks.resize(gripping);
     for (std::size_t k = 0; k < index.size(); ++k) state.grip.blocks[k / Dim][k % Dim] = static_cast<int>(index[k]);
     const auto fields = file.integers("/grid/grip_fields", gripping, 1);
-    check_indices(file, "/grid/grip_fields", fields, 0, most_fields);
+    check_indices(file, "/grid/grip_fields", fields, 0, most_fields + pairs_of(most_fields));
     state.grip.fields.assign(fields.begin(), fields.end());
     state.grip.smoothed = file.doubles("/grid/grip", gripping, Block<Dim>::nodes);
   }

@@ -54,6 +54,19 @@ class FieldLayout {
         }
         if (any) fields_at_[a] |= static_cast<std::uint8_t>(1U << f);
       }
+    shared_.clear();
+    shared_number_.assign(grid.active(), -1);
+    for (std::size_t a = 0; a < grid.active(); ++a) {
+      if (!shared(a)) continue;
+      shared_number_[a] = static_cast<int>(shared_.size());
+      shared_.push_back(a);
+    }
+    shared_around_.resize(shared_.size());
+    for (std::size_t s = 0; s < shared_.size(); ++s)
+      for (int k = 0; k < Block<Dim>::neighbours; ++k) {
+        const int other = grid.active_beside(shared_[s], k);
+        shared_around_[s][static_cast<std::size_t>(k)] = other < 0 ? -1 : shared_number_[static_cast<std::size_t>(other)];
+      }
     near_shared_.assign(grid.occupied(), 0);
     for (std::size_t b = 0; b < grid.occupied(); ++b)
       for (const int a : grid.active_around(b))
@@ -71,6 +84,11 @@ class FieldLayout {
   bool shared(std::size_t a) const { return count_ > 1 && (fields_at_[a] & (fields_at_[a] - 1U)) != 0; }
   // Whether nodes that two fields reach may be among those of occupied block b's tile.
   bool near_shared(std::size_t b) const { return count_ > 1 && near_shared_[b] != 0; }
+  // The active blocks that several fields reach, the number of active block a among them (-1: it is none), and the
+  // numbers of those around number s (-1: none).
+  const std::vector<std::size_t>& shared_blocks() const { return shared_; }
+  int shared_number(std::size_t a) const { return shared_number_[a]; }
+  const Around& shared_around(std::size_t s) const { return shared_around_[s]; }
   // Occupied blocks around active block a that hold particles of field f; -1: none.
   const Around& around(int f, std::size_t a) const {
     return count_ == 1 ? grid_->tiles_around(a) : around_[number(f, a)];
@@ -89,7 +107,9 @@ class FieldLayout {
   int count_ = 1;
   std::vector<FieldSpan> spans_;
   std::vector<std::size_t> first_span_;
-  std::vector<Around> around_;
+  std::vector<Around> around_, shared_around_;
+  std::vector<std::size_t> shared_;
+  std::vector<int> shared_number_;
   std::vector<std::uint8_t> fields_at_, near_shared_;
 };
 

@@ -224,6 +224,12 @@ class ExplicitSolver final : public Solver<Dim> {
   }
   // Field f's node 0 of active block a in arrays by nodes, and its tiles.
   std::size_t node_of(int f, std::size_t a) const { return fields_.number(f, a) * block_nodes; }
+  // Of a pair of fields (pair_of) in active block a, which several fields reach: node 0 in field_grip_.
+  std::size_t grip_of(int pair, std::size_t a) const {
+    return (static_cast<std::size_t>(pair) * fields_.shared_blocks().size() +
+            static_cast<std::size_t>(fields_.shared_number(a))) *
+           block_nodes;
+  }
   const Vec4* tiles_of(int f) const { return tiles_.data() + fields_.tile(f, 0) * tile_nodes; }
   const SplitNode<Dim>* beside_of(int f) const {
     return Split ? beside_.data() + fields_.tile(f, 0) * tile_nodes : nullptr;
@@ -248,6 +254,12 @@ class ExplicitSolver final : public Solver<Dim> {
   double change_of(std::size_t node, int d) const {
     return separate_change ? change_[node][d] : velocity_[node][2 + d];
   }
+  // Of field f in active block a, which several fields reach: node 0 in interfaces_.
+  std::size_t interface_of(int f, std::size_t a) const {
+    return (static_cast<std::size_t>(f) * fields_.shared_blocks().size() +
+            static_cast<std::size_t>(fields_.shared_number(a))) *
+           block_nodes;
+  }
   void limit_volumes();
   void sort();
   void lay_out();
@@ -269,12 +281,18 @@ class ExplicitSolver final : public Solver<Dim> {
   void drive_nodes(int f, std::size_t a, const Drive& drive, const NodeSums& node, GridSums<Dim>& sums);
   void touch_boundaries(int f, std::size_t a, const Drive& drive, const NodeSums& node, GridSums<Dim>& sums);
   unsigned fields_at(std::size_t a, int n, const NodeSums* node) const;
-  NodeBodies bodies_at(std::size_t a, int n, unsigned there, const NodeSums* node,
-                       const InterfaceNode (*surface)[block_nodes]) const;
+  NodeBodies bodies_at(std::size_t a, int n, unsigned there, const NodeSums* node) const;
   void set_motion(std::size_t node, BodyAtNode<Dim>& body) const;
   void join_sides(std::size_t a, int n, const NodeSums* node, GridSums<Dim>& sums);
-  void load_interfaces(std::size_t a, InterfaceNode (*surface)[block_nodes]) const;
+  void gather_interfaces();
+  SurfaceAround<Dim> surface_around(int f, std::size_t a, int n) const;
   ContactPairs<Dim> contact_pairs(NodeBodies& bodies, double dt) const;
+  void clear_grips(std::size_t a);
+  void keep_grips(std::size_t a, int n, const NodeBodies& bodies, const ContactPairs<Dim>& pairs);
+  void rub_fields(double dt);
+  void rub_fields_of(std::size_t s);
+  void brake_body(unsigned fields, std::size_t a, int n, double mass, const std::array<double, Dim>& dv,
+                  GridSums<Dim>& sums);
   void part_fields(std::size_t a, double dt, const NodeSums* node, GridSums<Dim>& sums);
   void take_over(std::size_t a, int n, const NodeSums* node, const NodeBodies& bodies, GridSums<Dim>& sums);
   void settle_on_ground(std::size_t a, double dt, const NodeSums* node, const std::uint8_t* met, GridSums<Dim>& sums);
@@ -330,8 +348,13 @@ class ExplicitSolver final : public Solver<Dim> {
   AlignedVector<Vec4> velocity_, change_;         // per active block
   AlignedVector<Vec4> sums_, force_sums_;         // per active block, only with mirrors
   AlignedVector<InterfaceNode> interface_tiles_;  // per occupied block, only with several fields
+  AlignedVector<InterfaceNode> interfaces_;       // per block that several fields reach
   std::vector<std::uint8_t> meeting_;  // per active block: nodes at which fields met in the last step; several fields
   HalfSpaces<Shape> half_spaces_;
+  // Per pair of fields and per block that several fields reach.
+  std::vector<FieldGrip<Dim>> field_grip_;
+  std::vector<FieldSpread> field_spread_;
+  std::vector<double> smoothed_push_;  // m/s2, only with Coulomb's friction between fields
   std::vector<std::array<double, Dim>> damped_;  // N s, taken by local damping in this step; per active block
   AlignedVector<PatchSum> averaged_tiles_;
   AlignedVector<PatchFit> averaged_;
@@ -351,6 +374,7 @@ class ExplicitSolver final : public Solver<Dim> {
   std::vector<Spread> spread_;
   std::vector<double> smoothed_grip_;              // m/s2, per active block
   std::vector<std::array<int, Dim>> grip_blocks_;  // the active blocks that it belongs to
+  std::vector<std::array<int, Dim>> push_blocks_;  // the shared blocks of smoothed_push_
   std::vector<GridSums<Dim>> grid_sums_;
   std::vector<BlockMotion> motion_;
   std::vector<StressWork> stress_work_;  // per occupied block
@@ -369,6 +393,7 @@ class ExplicitSolver final : public Solver<Dim> {
 #include "mpm_stage/step/explicit_solver_phases.hpp"
 #include "mpm_stage/step/explicit_solver_sleep.hpp"
 #include "mpm_stage/step/explicit_solver_upkeep.hpp"
+#include "mpm_stage/step/field_friction_phase.hpp"
 #include "mpm_stage/step/field_phase.hpp"
 #include "mpm_stage/step/grid_phase.hpp"
 #include "mpm_stage/step/mass_filter.hpp"

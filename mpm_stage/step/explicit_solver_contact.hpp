@@ -10,8 +10,14 @@ namespace tailrun::mpm {
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_ground(const Drive& drive) {
   for (int f = 0; f < fields_.count(); ++f) {
-    const NodeGrip* grip = grip_.data() + node_of(f, 0);
+    NodeGrip* grip = grip_.data() + node_of(f, 0);
     Spread* spread = spread_.data() + node_of(f, 0);
+#pragma omp parallel for schedule(dynamic, 4)
+    for (std::size_t a = 0; a < grid_.active(); ++a)
+      if (ground_.of_block(a) && fields_.present(f, a))
+        for (std::size_t k = a * block_nodes; k < (a + 1) * block_nodes; ++k)
+          if (grip[k].mass > 0.0)
+            grip[k].sliding = grip[k].mass * std::sqrt(square<Dim>(sliding_of<Dim>(grip[k], velocity_at(node_of(f, 0) + k))));
 #pragma omp parallel for schedule(dynamic, 4)
     for (std::size_t a = 0; a < grid_.active(); ++a)
       if (ground_.of_block(a) && fields_.present(f, a))

@@ -87,6 +87,10 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
     interface_tiles_.resize(tiles_.size());
     // Who meets where is found out anew in the next step.
     meeting_.assign(grid_.active() * block_nodes, 1);
+    interfaces_.assign(several * fields_.shared_blocks().size() * block_nodes, InterfaceNode{});
+    const auto pairs = static_cast<std::size_t>(pairs_of(fields_.count()));
+    field_grip_.assign(pairs * fields_.shared_blocks().size() * block_nodes, FieldGrip<Dim>{});
+    field_spread_.resize(field_grip_.size());
   }
   velocity_.resize(several * grid_.active() * block_nodes);
   if (separate_change) change_.resize(velocity_.size());
@@ -108,8 +112,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
     gap_tiles_.resize(tiles_.size());
     grip_.resize(velocity_.size());
     spread_.resize(velocity_.size());
-    remember_grip(memory);
   }
+  remember_grip(memory);
   if (extension_.active()) extension_.update(grid_, surface_roles());
   grid_sums_.resize(grid_.active());
   motion_.resize(grid_.occupied());
@@ -119,29 +123,45 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 GripMemory<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::grip_memory() const {
   GripMemory<Dim> memory;
-  for (std::size_t b = 0; b < smoothed_grip_.size() / block_nodes; ++b) {
-    const auto first = smoothed_grip_.begin() + static_cast<std::ptrdiff_t>(b * block_nodes);
-    if (std::none_of(first, first + block_nodes, [](double s) { return s > 0.0; })) continue;
-    memory.blocks.push_back(grip_blocks_[b % grip_blocks_.size()]);
-    memory.fields.push_back(static_cast<int>(b / grip_blocks_.size()));
-    memory.smoothed.insert(memory.smoothed.end(), first, first + block_nodes);
-  }
+  const auto keep = [&memory](const std::vector<double>& smoothed, const auto& blocks, int first_number) {
+    for (std::size_t b = 0; b < smoothed.size() / block_nodes; ++b) {
+      const auto first = smoothed.begin() + static_cast<std::ptrdiff_t>(b * block_nodes);
+      if (std::none_of(first, first + block_nodes, [](double s) { return s > 0.0; })) continue;
+      memory.blocks.push_back(blocks[b % blocks.size()]);
+      memory.fields.push_back(first_number + static_cast<int>(b / blocks.size()));
+      memory.smoothed.insert(memory.smoothed.end(), first, first + block_nodes);
+    }
+  };
+  keep(smoothed_grip_, grip_blocks_, 0);
+  keep(smoothed_push_, push_blocks_, most_fields);
   return memory;
 }
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::remember_grip(const GripMemory<Dim>& memory) {
-  smoothed_grip_.assign(velocity_.size(), 0.0);
-  grip_blocks_.resize(grid_.active());
   std::map<std::pair<int, std::array<int, Dim>>, std::size_t> known;
   for (std::size_t b = 0; b < memory.blocks.size(); ++b) known[{memory.fields[b], memory.blocks[b]}] = b;
-  for (std::size_t a = 0; a < grid_.active(); ++a) {
-    grip_blocks_[a] = grid_.active_index(a);
-    for (int f = 0; f < fields_.count(); ++f) {
-      const auto it = known.find({f, grip_blocks_[a]});
-      if (it == known.end()) continue;
-      const auto first = memory.smoothed.begin() + static_cast<std::ptrdiff_t>(it->second * block_nodes);
-      std::copy(first, first + block_nodes, smoothed_grip_.begin() + static_cast<std::ptrdiff_t>(node_of(f, a)));
+  const auto recall = [&](int number, const std::array<int, Dim>& block, double* smoothed) {
+    const auto it = known.find({number, block});
+    if (it == known.end()) return;
+    const auto first = memory.smoothed.begin() + static_cast<std::ptrdiff_t>(it->second * block_nodes);
+    std::copy(first, first + block_nodes, smoothed);
+  };
+  if (ground_.any()) {
+    smoothed_grip_.assign(velocity_.size(), 0.0);
+    grip_blocks_.resize(grid_.active());
+    for (std::size_t a = 0; a < grid_.active(); ++a) {
+      grip_blocks_[a] = grid_.active_index(a);
+      for (int f = 0; f < fields_.count(); ++f) recall(f, grip_blocks_[a], smoothed_grip_.data() + node_of(f, a));
+    }
+  }
+  if (fields_.several() && options_.contact.friction >= 0.0) {
+    smoothed_push_.assign(field_grip_.size(), 0.0);
+    push_blocks_.clear();
+    for (const std::size_t a : fields_.shared_blocks()) {
+      push_blocks_.push_back(grid_.active_index(a));
+      for (int pair = 0; pair < pairs_of(fields_.count()); ++pair)
+        recall(most_fields + pair, push_blocks_.back(), smoothed_push_.data() + grip_of(pair, a));
     }
   }
 }

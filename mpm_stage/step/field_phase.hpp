@@ -50,12 +50,13 @@ unsigned ExplicitSolver<Dim, Shape, Split, Transfer>::fields_at(std::size_t a, i
 // The bodies at a node with the fields `there`; sides of one soil that no weak soil keeps apart move as one.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 typename ExplicitSolver<Dim, Shape, Split, Transfer>::NodeBodies ExplicitSolver<Dim, Shape, Split, Transfer>::bodies_at(
-    std::size_t a, int n, unsigned there, const NodeSums* node, const InterfaceNode (*surface)[block_nodes]) const {
+    std::size_t a, int n, unsigned there, const NodeSums* node) const {
   NodeBodies bodies;
   for (int f = 0; f < fields_.count(); ++f) {
     if (!(there >> f & 1U)) continue;
     BodyAtNode<Dim>& body = bodies.body[bodies.count];
-    body = body_at_node<Dim>(node[f].sum[n][0], surface[f][n]);
+    body = body_at_node<Dim>(node[f].sum[n][0], interfaces_[interface_of(f, a) + static_cast<std::size_t>(n)],
+                             surface_around(f, a, n));
     body.firm = options_.fields.firm(f);
     set_motion(node_of(f, a) + static_cast<std::size_t>(n), body);
     bodies.of_field[f] = bodies.count++;
@@ -94,13 +95,44 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::join_sides(std::size_t a, int 
   take_over(a, n, node, bodies, sums);
 }
 
+// The surfaces of the fields at the nodes at which they met in the last step.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::load_interfaces(std::size_t a,
-                                                                  InterfaceNode (*surface)[block_nodes]) const {
-  for (int f = 0; f < fields_.count(); ++f)
-    if (fields_.present(f, a))
-      gather_tiles<Dim, Shape>(fields_.around(f, a), interface_tiles_.data() + fields_.tile(f, 0) * tile_nodes,
-                               surface[f]);
+void ExplicitSolver<Dim, Shape, Split, Transfer>::gather_interfaces() {
+  const std::vector<std::size_t>& blocks = fields_.shared_blocks();
+#pragma omp parallel for schedule(dynamic, 4)
+  for (std::size_t s = 0; s < blocks.size(); ++s) {
+    const std::uint8_t* met = meeting_.data() + blocks[s] * block_nodes;
+    const bool any = std::any_of(met, met + block_nodes, [](std::uint8_t m) { return m != 0; });
+    for (int f = 0; f < fields_.count(); ++f) {
+      InterfaceNode* node = interfaces_.data() + interface_of(f, blocks[s]);
+      if (any && fields_.present(f, blocks[s]))
+        gather_tiles<Dim, Shape>(fields_.around(f, blocks[s]),
+                                 interface_tiles_.data() + fields_.tile(f, 0) * tile_nodes, node);
+      for (int n = 0; n < block_nodes; ++n)
+        if (!met[n] || !any) node[n] = InterfaceNode{};  // its sums are not whole
+    }
+  }
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+SurfaceAround<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::surface_around(int f, std::size_t a, int n) const {
+  const auto& around = fields_.shared_around(static_cast<std::size_t>(fields_.shared_number(a)));
+  const InterfaceNode* nodes = interfaces_.data() + interface_of(f, fields_.shared_blocks()[0]);
+  SurfaceAround<Dim> surface;
+  for (int k = 0; k < Block<Dim>::neighbours; ++k) {
+    const auto step = neighbour_step<Dim>(k);
+    const auto at = node_beside<Dim>(around, n, step);
+    if (at < 0) continue;
+    double weight = 1.0, square = 0.0;
+    for (int d = 0; d < Dim; ++d) weight *= step[d] == 0 ? 2.0 : 1.0;
+    for (int d = 0; d < Dim; ++d) {
+      const double face = nodes[at].second[1 + d];
+      surface.outward[d] += weight * face;
+      square += face * face;
+    }
+    surface.faces += weight * std::sqrt(square);
+  }
+  return surface;
 }
 
 // The contacts between the bodies of a node, at which the pairs point.
@@ -111,9 +143,26 @@ ContactPairs<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::contact_pairs(Nod
     for (int j = i + 1; j < bodies.count; ++j) {
       // Both sides of weak soil meet through it alone.
       if (options_.fields.by_side && i != bodies.of_field[1] && j != bodies.of_field[1]) continue;
-      pairs.add(ContactPair<Dim>(bodies.body[i], bodies.body[j], options_.contact, h_, dt, half_spaces_));
+      pairs.add(ContactPair<Dim>(bodies.body[i], bodies.body[j], options_.contact, h_, dt, half_spaces_), i, j);
     }
   return pairs;
+}
+
+// What brakes the pairs of node n, for rub_fields().
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::keep_grips(std::size_t a, int n, const NodeBodies& bodies,
+                                                             const ContactPairs<Dim>& pairs) {
+  std::array<unsigned, most_fields> of_body{};  // fields, as bits
+  for (int f = 0; f < fields_.count(); ++f)
+    if (bodies.of_field[f] >= 0) of_body[bodies.of_field[f]] |= 1U << f;
+  for (int k = 0; k < pairs.count(); ++k) {
+    FieldGrip<Dim> grip = pairs[k].grip();
+    if (!grip.any()) continue;
+    const auto [i, j] = pairs.bodies(k);
+    grip.fields = {static_cast<std::uint8_t>(of_body[i]), static_cast<std::uint8_t>(of_body[j])};
+    const int pair = pair_of(std::countr_zero(of_body[i]), std::countr_zero(of_body[j]), fields_.count());
+    field_grip_[grip_of(pair, a) + static_cast<std::size_t>(n)].press(grip);
+  }
 }
 
 // Contact at the shared nodes of block a.
@@ -124,8 +173,6 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::part_fields(std::size_t a, dou
   constexpr int most_rounds = 30;
   constexpr double little = 1e-6;
   constexpr unsigned both_sides = 0b101;
-  InterfaceNode surface[most_fields][block_nodes];
-  bool loaded = false;
   std::uint8_t* meeting = meeting_.data() + a * block_nodes;
   for (int n = 0; n < block_nodes; ++n) {
     const unsigned there = fields_at(a, n, node);
@@ -134,9 +181,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::part_fields(std::size_t a, dou
     meeting[n] = several && !sides ? 1 : 0;
     if (sides) join_sides(a, n, node, sums);
     if (!meeting[n] || !known) continue;
-    if (!loaded) load_interfaces(a, surface);
-    loaded = true;
-    NodeBodies bodies = bodies_at(a, n, there, node, surface);
+    NodeBodies bodies = bodies_at(a, n, there, node);
     auto pairs = contact_pairs(bodies, dt);
     double first = 0.0, change = 0.0;
     for (int round = 0; round < most_rounds; ++round) {
@@ -145,7 +190,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::part_fields(std::size_t a, dou
       if (round == 0) first = change;
       if (pairs.count() < 2 || change <= little * first) break;
     }
-    for (ContactPair<Dim>& pair : pairs) sums.contact += pair.rub();
+    for (ContactPair<Dim>& pair : pairs) pair.join();
+    keep_grips(a, n, bodies, pairs);
     take_over(a, n, node, bodies, sums);
   }
 }
@@ -178,8 +224,6 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::settle_on_ground(std::size_t a
                                                                    const std::uint8_t* met, GridSums<Dim>& sums) {
   constexpr int most_rounds = 20;
   const NodeContact* contact = ground_.of_block(a);
-  InterfaceNode surface[most_fields][block_nodes];
-  bool loaded = false;
   for (int n = 0; n < block_nodes; ++n) {
     if (contact[n].count == 0 || !met[n] || !meeting_[a * block_nodes + static_cast<std::size_t>(n)]) continue;
     const unsigned there = fields_at(a, n, node);
@@ -187,9 +231,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::settle_on_ground(std::size_t a
     for (int f = 0; f < fields_.count(); ++f)
       rest = rest || ((there >> f & 1U) && grip_[node_of(f, a) + static_cast<std::size_t>(n)].pushed);
     if (!rest) continue;
-    if (!loaded) load_interfaces(a, surface);
-    loaded = true;
-    NodeBodies bodies = bodies_at(a, n, there, node, surface);
+    NodeBodies bodies = bodies_at(a, n, there, node);
     if (bodies.count < 2) continue;
     std::array<bool, most_fields> rests{};
     std::array<double, most_fields> capacity{};
@@ -214,6 +256,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::settle_on_ground(std::size_t a
       if (grip.pushed) grip.capacity += capacity[b] * m / bodies.body[b].mass;
       for (int d = 0; d < Dim; ++d) sums.impulse[d] += m * (bodies.body[b].v[d] - free.body[b].v[d]);
     }
+    keep_grips(a, n, bodies, pairs);
     take_over(a, n, node, bodies, sums);
   }
 }

@@ -12,8 +12,10 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
   const auto since = Clock::now();
   const Drive drive = drive_of(dt, body, inertial);
   if (needs_all_sums()) complete_sums();
+  if (fields_.several()) gather_interfaces();
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t a = 0; a < grid_.active(); ++a) grid_sums_[a] = still(a) ? rest_block(a) : move_block(a, drive);
+  if (fields_.several()) rub_fields(dt);
   if (ground_.any()) rub_ground(drive);
   if (!bodies_.empty()) move_bodies(dt);
   continue_velocities();
@@ -60,6 +62,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::complete_sums() {
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 GridSums<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::rest_block(std::size_t a) {
+  if (fields_.shared(a)) clear_grips(a);
   for (int f = 0; f < fields_.count(); ++f) {
     if (!fields_.present(f, a)) continue;
     std::fill_n(velocity_.data() + node_of(f, a), block_nodes, Vec4{});
@@ -96,6 +99,7 @@ GridSums<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::move_block(std::size_
   std::uint8_t met[block_nodes];
   if (fields_.shared(a)) {
     std::copy_n(meeting_.data() + a * block_nodes, block_nodes, met);
+    clear_grips(a);
     part_fields(a, drive.dt, node, sums);
   }
   if (touched)
