@@ -40,6 +40,7 @@ namespace {
 
 struct Arguments {
   std::string case_file, size, folder = ".", mesh, geostatic, from;
+  bool trust_geometry = false;
 };
 
 fs::path mesh_path(const Arguments& arguments) {
@@ -47,6 +48,18 @@ fs::path mesh_path(const Arguments& arguments) {
 }
 fs::path geostatic_path(const Arguments& arguments) {
   return arguments.geostatic.empty() ? fs::path(arguments.folder) / "geostatic.h5" : fs::path(arguments.geostatic);
+}
+
+// What is wrong with the model is said with a pointer into the case; here the case's name comes before it.
+Model model_of(const Arguments& arguments, const FemCase& options) {
+  try {
+    return build_model(options, mesh_path(arguments));
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    for (const char* root : {"/boundaries", "/regions", "/loads", "/output", "/above_phreatic_line"})
+      if (text.rfind(root, 0) == 0) throw InputError(arguments.case_file + ": " + text);
+    throw;
+  }
 }
 
 // Geometry -> mesh.msh, or a copy of the case's own mesh file, with a report on its quality.
@@ -57,7 +70,8 @@ void make_mesh(const Arguments& arguments) {
   require_replaceable(output);
   Mesh mesh;
   if (!options.mesh.geometry.empty()) {
-    mesh = mesh_geometry(options.mesh.geometry, options.mesh.parameters, output);
+    mesh = mesh_geometry(options.mesh.geometry,
+                         {options.mesh.parameters, options.mesh.time_limit, arguments.trust_geometry}, output);
   } else if (options.mesh.rectangle) {
     write_rectangle_mesh(*options.mesh.rectangle, output);
     mesh = read_gmsh(output);
@@ -80,7 +94,7 @@ void make_geostatic(const Arguments& arguments) {
   require_replaceable(fs::path(arguments.folder) / "geostatic.h5");
   echo_options(arguments.case_file, options.echo);
   options.provenance.add_file(mesh_path(arguments));
-  const Model model = build_model(options, mesh_path(arguments));
+  const Model model = model_of(arguments, options);
   MaterialPoints points = make_material_points(model);
   State state;
   const GeostaticReport report = run_geostatic(model, points, state);
@@ -117,10 +131,11 @@ void make_shake(const Arguments& arguments, bool echo) {
   if (!options.shake.motion.empty()) options.provenance.add_file(options.shake.motion);
   const fs::path start = arguments.from.empty() ? geostatic_path(arguments) : fs::path(arguments.from);
   options.provenance.add_file(start);
-  const Model model = build_model(options, mesh_path(arguments));
+  const Model model = model_of(arguments, options);
   MaterialPoints points = make_material_points(model);
   State state;
   read_state(start, model, state, points);
+  check_shake_output(options, static_cast<double>(fs::file_size(start)), arguments.folder);
   if (!arguments.from.empty()) check_restart(arguments, options, state, true);
   const ShakeReport report = run_shake(model, points, state, motion, arguments.folder);
   const auto summary = shake_summary(model, motion, report);
@@ -143,7 +158,7 @@ void make_consolidation(const Arguments& arguments) {
   echo_options(arguments.case_file, options.echo);
   options.provenance.add_file(mesh_path(arguments));
   options.provenance.add_file(arguments.from);
-  const Model model = build_model(options, mesh_path(arguments));
+  const Model model = model_of(arguments, options);
   MaterialPoints points = make_material_points(model);
   State state;
   read_state(arguments.from, model, state, points);
@@ -174,7 +189,12 @@ int main(int argc, char** argv) {
     command->add_option("--size", arguments.size, "Entry of /mesh/sizes in the case (coarse, default, fine)");
     return command;
   };
-  add_stage("mesh", "Geometry to mesh.msh")->callback([&] { make_mesh(arguments); });
+  const auto let_trust = [&](CLI::App* command) {
+    command->add_flag("--trust-geometry", arguments.trust_geometry,
+                      "Let the geometry start programs and write files (SystemCall, Save ...)");
+    return command;
+  };
+  let_trust(add_stage("mesh", "Geometry to mesh.msh"))->callback([&] { make_mesh(arguments); });
 
   CLI::App* geostatic = add_stage("geostatic", "Gravity and water to geostatic.h5");
   geostatic->add_option("--mesh", arguments.mesh, "Mesh file (default: mesh.msh in the results' folder)");
@@ -192,7 +212,8 @@ int main(int argc, char** argv) {
   consolidate->add_option("--from", arguments.from, "State after the shaking (snapshot_t*.h5)")->required();
   consolidate->callback([&] { make_consolidation(arguments); });
 
-  add_stage("run", "mesh, geostatic and shake")->callback([&] {
+  let_trust(add_stage("run", "mesh, geostatic and shake"))->callback([&] {
+    case_motion(read_fem_case(arguments.case_file, arguments.size));  // wrong? Then say so before computing
     make_mesh(arguments);
     make_geostatic(arguments);
     make_shake(arguments, false);

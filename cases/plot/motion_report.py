@@ -25,7 +25,10 @@ def main():
     arguments = parser.parse_args()
 
     plt = style.pyplot()
-    acceleration, step = gm.read_at2(arguments.motion)
+    try:
+        acceleration, step = gm.read_at2(arguments.motion)
+    except (OSError, ValueError) as error:
+        sys.exit(f"motion_report.py: {error}")
     if arguments.pga:
         acceleration = acceleration * (arguments.pga / np.abs(acceleration).max())
     pga = np.abs(acceleration).max()

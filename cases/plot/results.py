@@ -28,12 +28,6 @@ def suggestion(window):
     return (show(time), "s") if time is not None else (f"none: {window.get('reason', '-')}", "")
 
 
-def warnings_of(stage, summaries):
-    """One row for each warning, however many summaries carry it."""
-    texts = dict.fromkeys(text for summary in summaries if summary for text in summary.get("warnings", []))
-    return [(stage, "WARNING", text, "") for text in texts]
-
-
 def collect(results, phase):
     """Rows (stage, what, value, unit) from the summaries and series of a case; missing ones are left out."""
     rows = []
@@ -71,6 +65,8 @@ def collect(results, phase):
         ]
         if crest[0] is not None:
             rows.insert(-3, ("MPM", "crest sinks by", show(crest[0] - crest[1] + 0.0), "m"))
-    rows += warnings_of("FEM", [mesh, chain.summary(results / "fem" / "geostatic.json"), fem])
-    rows += warnings_of("MPM", [mpm])  # those of the hand-over are among them
+    geostatic = chain.summary(results / "fem" / "geostatic.json")
+    for stage, summaries in (("FEM", (mesh, geostatic, fem)), ("MPM", (mpm,))):
+        told = [text for summary in summaries if summary for text in summary.get("warnings", [])]
+        rows += [(stage, "warning", text, "") for text in dict.fromkeys(told)]
     return rows

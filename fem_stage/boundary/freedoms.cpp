@@ -4,9 +4,44 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
+#include "common/error.hpp"
+
 namespace tailrun::fem {
+namespace {
+
+// Every one of the nodes, sorted by height, has another at its height: a node that is left alone would stay loose in
+// silence, though it lies only a centimetre off.
+void require_partners(const Mesh& mesh, const std::vector<std::int64_t>& sorted, double tolerance,
+                      const std::string& where) {
+  const auto x = [&](std::size_t i) { return mesh.x(static_cast<std::size_t>(sorted[i])); };
+  const auto y = [&](std::size_t i) { return mesh.y(static_cast<std::size_t>(sorted[i])); };
+  std::string places;
+  std::size_t alone = 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < sorted.size();) {
+    std::size_t j = i + 1;
+    while (j < sorted.size() && y(j) - y(i) <= tolerance) ++j;
+    if (j == i + 1) {
+      double gap = std::numeric_limits<double>::infinity();
+      if (i > 0) gap = std::min(gap, y(i) - y(i - 1));
+      if (j < sorted.size()) gap = std::min(gap, y(j) - y(i));
+      nearest = std::min(nearest, gap);
+      if (++alone <= 5) places += fmt::format("{}({:.6g}, {:.6g})", places.empty() ? "" : ", ", x(i), y(i));
+    }
+    i = j;
+  }
+  if (alone > 0)
+    throw InputError(
+        fmt::format("{}: {} of {} nodes have no partner at the same height (within {:.2g} m): {}{}{}; nodes are "
+                    "tied by their height, so the two sides need the same ones",
+                    where, alone, sorted.size(), tolerance, places, alone > 5 ? ", ..." : "",
+                    std::isfinite(nearest) ? fmt::format("; the smallest difference is {:.3g} m", nearest) : ""));
+}
+
+}  // namespace
 
 Freedoms::Freedoms(std::size_t nodes) : parent_(3 * nodes), fixed_(3 * nodes, 0) {
   std::iota(parent_.begin(), parent_.end(), std::size_t{0});
@@ -59,10 +94,11 @@ std::string Freedoms::Equations::describe(int equation, const Mesh& mesh) const 
 }
 
 void tie_equal_heights(Freedoms& freedoms, const Mesh& mesh, std::span<const std::int64_t> nodes, double tolerance,
-                       std::span<const Freedom> which) {
+                       std::span<const Freedom> which, const std::string& where) {
   std::vector<std::int64_t> sorted(nodes.begin(), nodes.end());
   const auto height = [&](std::int64_t node) { return mesh.y(static_cast<std::size_t>(node)); };
   std::stable_sort(sorted.begin(), sorted.end(), [&](auto a, auto b) { return height(a) < height(b); });
+  require_partners(mesh, sorted, tolerance, where);
   for (std::size_t i = 0; i < sorted.size();) {
     std::size_t j = i + 1;
     for (; j < sorted.size() && std::abs(height(sorted[j]) - height(sorted[i])) <= tolerance; ++j)

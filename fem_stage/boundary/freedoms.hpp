@@ -34,8 +34,9 @@ class Freedoms {
   std::vector<char> fixed_;          // by root
 };
 
-// Ties nodes of `nodes` that have the same elevation (within `tolerance` m) to the first of them.
+// Ties nodes of `nodes` that have the same elevation (within `tolerance` m) to the first of them. Throws InputError,
+// beginning with `where` (a place in the case file), when a node has no other at its elevation.
 void tie_equal_heights(Freedoms& freedoms, const Mesh& mesh, std::span<const std::int64_t> nodes, double tolerance,
-                       std::span<const Freedom> which);
+                       std::span<const Freedom> which, const std::string& where);
 
 }  // namespace tailrun::fem

@@ -35,7 +35,11 @@ std::vector<BoundaryEdge> boundary_edges(const Mesh& mesh, std::span<const doubl
     }
   std::vector<BoundaryEdge> edges;
   for (const auto& [p, q] : it->second) {
-    const Owner& owner = owners.at({std::min(p, q), std::max(p, q)});
+    const auto found = owners.find({std::min(p, q), std::max(p, q)});
+    if (found == owners.end())
+      throw InputError(fmt::format("{}: an edge of line '{}' at ({:.4g}, {:.4g}) is no side of an element", where, line,
+                                   mesh.x(static_cast<std::size_t>(p)), mesh.y(static_cast<std::size_t>(p))));
+    const Owner& owner = found->second;
     if (owner.count != 1)
       throw InputError(
           fmt::format("{}: line '{}' runs inside the model (between two elements at ({:.4g}, {:.4g})), but "

@@ -10,6 +10,8 @@
 #include <string>
 
 #include "common/error.hpp"
+#include "common/motion_units.hpp"
+#include "common/number_text.hpp"
 
 namespace tailrun::fem {
 
@@ -36,18 +38,30 @@ TimeHistory TimeHistory::table(const std::filesystem::path& path) {
   if (!stream) throw InputError(fmt::format("{}: no such file, or it cannot be read", path.string()));
   TimeHistory out(Kind::table, 0.0);
   int row = 0;
+  double to_seconds = 1.0;
   for (std::string line; std::getline(stream, line);) {
     ++row;
+    if (row == 1 && line.rfind("\xEF\xBB\xBF", 0) == 0) line.erase(0, 3);
+    const std::string found = line;
     for (char& c : line)
-      if (c == ',' || c == '\r') c = ' ';
-    if (line.find_first_not_of(" \t") == std::string::npos) continue;
+      if (c == ',' || c == ';' || c == '\t' || c == '\r') c = ' ';
+    if (line.find_first_not_of(' ') == std::string::npos) continue;
     std::istringstream words(line);
-    double time = 0.0, factor = 0.0;
-    if (!(words >> time >> factor) || !std::isfinite(time) || !std::isfinite(factor)) {
-      if (row == 1) continue;  // a header
+    std::string first, second, third;
+    words >> first >> second >> third;
+    const auto at = number_of(first), value = number_of(second);
+    if (out.time_.empty() && row == 1 && !at) {  // a header, which may say the unit of time
+      const ColumnUnit unit = column_unit(found.substr(0, found.find_first_of(",;\t\r")));
+      to_seconds = unit.time.value_or(1.0);
+      if (!unit.unknown.empty())
+        throw InputError(
+            fmt::format("{}: row 1: '{}' is no unit of time: s or ms is required", path.string(), unit.unknown));
+      continue;
+    }
+    if (!at || !value || !third.empty())
       throw InputError(
           fmt::format("{}: row {}: found '{}', but 'time [s], factor' is required", path.string(), row, line));
-    }
+    const double time = to_seconds * *at, factor = *value;
     if (!out.time_.empty() && time <= out.time_.back())
       throw InputError(fmt::format("{}: row {}: time {:g} s does not ascend (the row before has {:g} s)", path.string(),
                                    row, time, out.time_.back()));

@@ -5,122 +5,157 @@
 #include <cmath>
 #include <functional>
 #include <iostream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "common/application.hpp"
 #include "common/case_file.hpp"
 #include "common/error.hpp"
+#include "common/warnings.hpp"
+#include "fem_stage/element_test/calibration_targets.hpp"
 #include "fem_stage/element_test/curve_picture.hpp"
-#include "fem_stage/element_test/element_test_case.hpp"
+#include "fem_stage/material/material_definition.hpp"
 
 namespace tailrun::fem {
 
 namespace {
 
-struct CyclicTarget {
-  double csr = 0.0;
-  double cycles = 15.0;
-  double shear_strain = 0.03;
-  double vertical_effective_stress = 1e5;
-  double K0 = 0.5;
-  double static_shear_ratio = 0.0;
+using Json = nlohmann::ordered_json;
+
+// Where a search ended: at the target, or at the end of the range that comes nearest to it.
+struct Fit {
+  double value = 0.0;
+  bool reached = true;
 };
-
-struct StrengthTarget {
-  double vertical_effective_stress = 0.0;
-  double shear_stress = 0.0;
-};
-
-struct Targets {
-  std::optional<CyclicTarget> cyclic;
-  double working_strain = 0.1;
-  double residual_K0 = 0.5;
-  std::vector<StrengthTarget> residual;
-};
-
-ElementTestCase cyclic_test(const Pm4SandParameters& sand, const CyclicTarget& target, double csr, double most_cycles) {
-  ElementTestCase test;
-  test.material = {"calibration", sand};
-  test.vertical_effective_stress = target.vertical_effective_stress;
-  test.K0 = target.K0;
-  test.static_shear_ratio = target.static_shear_ratio;
-  test.csr = csr;
-  test.stop_cycles = most_cycles;
-  test.stop_strain = target.shear_strain;
-  return test;
-}
-
-// Cycles until the criterion strain; `most_cycles` when it is not reached by then.
-double cycles_to_failure(const Pm4SandParameters& sand, const CyclicTarget& target, double csr, double most_cycles) {
-  return simulate(cyclic_test(sand, target, csr, most_cycles)).cycles;
-}
-
-// Shear stress at the working strain in undrained monotonic simple shear.
-double working_strength(const Pm4SandParameters& sand, const Targets& targets, double vertical_effective_stress) {
-  ElementTestCase test;
-  test.material = {"calibration", sand};
-  test.vertical_effective_stress = vertical_effective_stress;
-  test.K0 = targets.residual_K0;
-  test.type = ElementTestType::monotonic_simple_shear;
-  test.strain_increment = 1e-4;
-  test.stop_strain = targets.working_strain;
-  return simulate(test).rows.back().shear_stress;
-}
-
-double mean_log_strength_ratio(const Pm4SandParameters& sand, const Targets& targets) {
-  double sum = 0.0;
-  for (const StrengthTarget& t : targets.residual) {
-    sum += std::log(working_strength(sand, targets, t.vertical_effective_stress) / t.shear_stress);
-  }
-  return sum / static_cast<double>(targets.residual.size());
-}
 
 // Root of a function that grows with x, by bisection between the ends of the admissible range, starting around `guess`.
-double growing_root(const std::function<double(double)>& f, double guess, double step, double low, double high,
-                    double accuracy, const std::string& what) {
+Fit growing_root(const std::function<double(double)>& f, double guess, double step, double low, double high,
+                 double accuracy) {
   double a = guess, b = guess;
   double fa = f(guess), fb = fa;
   while (fa > 0.0 && a > low) fb = fa, b = a, a = std::max(low, a - step), fa = f(a), step *= 2.0;
   while (fb < 0.0 && b < high) fa = fb, a = b, b = std::min(high, b + step), fb = f(b), step *= 2.0;
-  if (fa > 0.0 || fb < 0.0) {
-    throw ComputationError(
-        fmt::format("calibrate: no {} reaches the target; at the ends of its range the misfit is "
-                    "{:.3g} and {:.3g}",
-                    what, fa, fb));
-  }
+  if (fa > 0.0) return {a, false};
+  if (!(fb >= 0.0)) return {b, false};
   while (b - a > accuracy) {
     const double middle = 0.5 * (a + b);
     (f(middle) < 0.0 ? a : b) = middle;
   }
-  return 0.5 * (a + b);
+  return {0.5 * (a + b), true};
 }
 
-Targets read_targets(const CaseNode& root) {
-  Targets targets;
-  if (const auto node = root.object_if("cyclic_strength")) {
-    CyclicTarget t;
-    t.csr = node->number("csr", "1", Range::positive());
-    t.cycles = node->number_or("cycles", "1", Range::between(0.5, 1000.0), t.cycles);
-    t.shear_strain = node->number_or("shear_strain", "1", Range::open(0.0, 0.5), t.shear_strain);
-    t.vertical_effective_stress =
-        node->number_or("vertical_effective_stress", "Pa", Range::positive(), t.vertical_effective_stress);
-    t.K0 = node->number_or("K0", "1", Range::positive(), t.K0);
-    t.static_shear_ratio = node->number_or("static_shear_ratio", "1", Range::between(-1.0, 1.0), 0.0);
-    targets.cyclic = t;
-  }
-  if (const auto node = root.object_if("residual_strength")) {
-    targets.working_strain = node->number_or("shear_strain", "1", Range::open(0.0, 2.0), targets.working_strain);
-    targets.residual_K0 = node->number_or("K0", "1", Range::positive(), targets.residual_K0);
-    for (const CaseNode& row : node->list("targets")) {
-      targets.residual.push_back({row.number("vertical_effective_stress", "Pa", Range::positive()),
-                                  row.number("shear_stress", "Pa", Range::positive())});
+constexpr double lowest_Q = 5.0, highest_Q = 20.0, lowest_hpo = 1e-3, highest_hpo = 1e3;
+constexpr double usual_hpo = 10.0;  // published calibrations lie between 0.05 and about 6
+
+// Q (R given) so that the residual strengths are met in the mean, with the other parameters as they are.
+Fit fit_Q(const Pm4SandParameters& sand, const Targets& targets) {
+  return growing_root(
+      [&](double Q) {
+        Pm4SandParameters trial = sand;
+        trial.Q = Q;
+        return mean_log_strength_ratio(trial, targets);
+      },
+      sand.Q, 0.5, lowest_Q, highest_Q, 1e-3);
+}
+
+// h_po so that the cyclic strength is met, with the other parameters as they are.
+Fit fit_hpo(const Pm4SandParameters& sand, const CyclicTarget& target) {
+  Fit fit = growing_root(
+      [&](double log_h_po) {
+        Pm4SandParameters trial = sand;
+        trial.contraction_rate = std::exp(log_h_po);
+        return std::log(cycles_to_failure(trial, target, target.csr, 4.0 * target.cycles) / target.cycles);
+      },
+      std::log(sand.contraction_rate), 0.5, std::log(lowest_hpo), std::log(highest_hpo), 2e-3);
+  fit.value = std::exp(fit.value);
+  return fit;
+}
+
+struct Calibrated {
+  Pm4SandParameters sand;
+  bool cyclic_reached = true, residual_reached = true;
+};
+
+// Each of the two moves the other's target somewhat: one after the other until neither changes.
+Calibrated calibrated(const Pm4SandParameters& given, const Targets& targets) {
+  Calibrated out{given};
+  const bool both = targets.cyclic && !targets.residual.empty();
+  for (int round = 0; round < (both ? 20 : 1); ++round) {
+    const Pm4SandParameters before = out.sand;
+    if (!targets.residual.empty()) {
+      const Fit fit = fit_Q(out.sand, targets);
+      out.sand.Q = fit.value;
+      out.residual_reached = fit.reached;
     }
-    if (targets.residual.empty()) node->fail("targets", "an empty list");
+    if (targets.cyclic) {
+      const Fit fit = fit_hpo(out.sand, *targets.cyclic);
+      out.sand.contraction_rate = fit.value;
+      out.cyclic_reached = fit.reached;
+    }
+    if (std::fabs(out.sand.Q - before.Q) < 2e-3 &&
+        std::fabs(std::log(out.sand.contraction_rate / before.contraction_rate)) < 5e-3)
+      break;
   }
-  if (!targets.cyclic && targets.residual.empty()) {
-    root.fail("", "neither cyclic_strength nor residual_strength is given; there is nothing to calibrate to");
+  return out;
+}
+
+// When they cannot be met together: over the whole range of Q, with h_po for the cyclic strength at each, the one with
+// the smallest misfit. `by_Q` gets a row for each.
+Calibrated nearest_compromise(const Pm4SandParameters& given, const Targets& targets, Json& by_Q) {
+  Calibrated best{given, false, false};
+  double least = std::numeric_limits<double>::infinity();
+  by_Q = Json::array();
+  for (double Q = lowest_Q; Q <= highest_Q; Q += 1.0) {
+    Pm4SandParameters trial = given;
+    trial.Q = Q;
+    const Fit hpo = fit_hpo(trial, *targets.cyclic);
+    trial.contraction_rate = hpo.value;
+    const double residual = mean_log_strength_ratio(trial, targets);
+    const double cycles = cycles_to_failure(trial, *targets.cyclic, targets.cyclic->csr, 4.0 * targets.cyclic->cycles);
+    by_Q.push_back({{"Q", Q}, {"hpo", hpo.value}, {"cycles", cycles}, {"residual_over_target", std::exp(residual)}});
+    const double misfit =
+        std::abs(residual) + (hpo.reached ? 0.0 : std::abs(std::log(cycles / targets.cyclic->cycles)));
+    if (misfit < least) {
+      least = misfit;
+      best = {trial, hpo.reached, false};
+    }
   }
-  return targets;
+  return best;
+}
+
+// What each target asks for by itself, the other parameter as the case gives it.
+Json asked_for(const Pm4SandParameters& given, const Targets& targets, std::string& words) {
+  Json out;
+  if (targets.cyclic) {
+    const Fit fit = fit_hpo(given, *targets.cyclic);
+    out["cyclic_strength"] = {{"hpo", fit.value}, {"with_Q", given.Q}, {"reached", fit.reached}};
+    words += fmt::format("the cyclic strength alone asks for hpo {}{:.3g} (with Q {:g}, as given)",
+                         fit.reached ? "= " : "beyond ", fit.value, given.Q);
+  }
+  if (!targets.residual.empty()) {
+    const Fit fit = fit_Q(given, targets);
+    out["residual_strength"] = {{"Q", fit.value}, {"with_hpo", given.contraction_rate}, {"reached", fit.reached}};
+    words += fmt::format("{}the residual strength alone asks for Q {}{:.4g} (with hpo {:g}, as given)",
+                         words.empty() ? "" : ", ", fit.reached ? "= " : "beyond ", fit.value, given.contraction_rate);
+    if (targets.cyclic) {  // and what the cyclic strength needs there
+      Pm4SandParameters there = given;
+      there.Q = fit.value;
+      const Fit cyclic = fit_hpo(there, *targets.cyclic);
+      out["cyclic_strength_at_that_Q"] = {{"hpo", cyclic.value}, {"reached", cyclic.reached}};
+      words += fmt::format("; at that Q the cyclic strength asks for hpo {}{:.3g}", cyclic.reached ? "= " : "beyond ",
+                           cyclic.value);
+    }
+  }
+  return out;
+}
+
+// The case's material with the values found, to be pasted into fem.json's "materials".
+Json materials_block(const std::string& case_text, const Pm4SandParameters& sand) {
+  Json material = Json::parse(case_text, nullptr, true, true).at("material");
+  material["hpo"] = sand.contraction_rate;
+  material["Q"] = sand.Q;
+  material["R"] = sand.R;
+  return {{"calibrated", material}};
 }
 
 CurvePicture cyclic_curve(const Pm4SandParameters& sand, const CyclicTarget& target, std::string& csv) {
@@ -165,6 +200,43 @@ CurvePicture strength_curve(const Pm4SandParameters& sand, const Targets& target
   return chart;
 }
 
+// How the strength of one relative density grows with the stress before is fixed by R and Q: targets that grow
+// otherwise are met in the mean only.
+void note_equal_strengths(const Json& out, const Targets& targets) {
+  if (targets.residual.size() < 2) return;
+  double low = std::numeric_limits<double>::infinity(), high = 0.0;
+  for (const auto& row : out.at("residual_strength")) {
+    const double ratio = row.at("shear_stress").get<double>() / row.at("target").get<double>();
+    low = std::min(low, ratio);
+    high = std::max(high, ratio);
+  }
+  if (high > 1.1 * low)
+    add_warning(fmt::format(
+        "calibrate: the residual strengths are met in the mean only, at {:.0f} to {:.0f} % of their "
+        "targets: R and Q fix how strength grows with the stress before, the targets ask for another growth",
+        100.0 * low, 100.0 * high));
+}
+
+std::string what_was_reached(const Json& out, const std::string& alone, const std::string& file) {
+  std::string text =
+      fmt::format("calibrate: the targets cannot be met together: nearest are hpo {:.3g} and Q {:.4g}, with ",
+                  out.at("hpo").get<double>(), out.at("Q").get<double>());
+  bool first = true;
+  if (out.contains("cyclic_strength")) {
+    text += fmt::format("{:.3g} cycles for {:g}", out["cyclic_strength"]["cycles"].get<double>(),
+                        out["cyclic_strength"]["target_cycles"].get<double>());
+    first = false;
+  }
+  if (out.contains("residual_strength"))
+    for (const auto& row : out["residual_strength"]) {
+      text +=
+          fmt::format("{}{:.3g} kPa for {:g} at {:g} kPa", first ? "" : ", ", 1e-3 * row["shear_stress"].get<double>(),
+                      1e-3 * row["target"].get<double>(), 1e-3 * row["vertical_effective_stress"].get<double>());
+      first = false;
+    }
+  return fmt::format("{}; {}. All of it is in {}", text, alone, file);
+}
+
 }  // namespace
 
 int run_calibration(const CalibrationOptions& options) {
@@ -176,39 +248,13 @@ int run_calibration(const CalibrationOptions& options) {
   const Targets targets = read_targets(root);
   file.finish();
 
-  Pm4SandParameters sand = *given;
-  // Each of the two moves the other's target somewhat: one after the other until neither changes.
-  const bool both = targets.cyclic && !targets.residual.empty();
-  for (int round = 0; round < (both ? 20 : 1); ++round) {
-    const Pm4SandParameters before = sand;
-    if (!targets.residual.empty()) {
-      sand.Q = growing_root(
-          [&](double Q) {
-            Pm4SandParameters trial = sand;
-            trial.Q = Q;
-            return mean_log_strength_ratio(trial, targets);
-          },
-          sand.Q, 0.5, 5.0, 20.0, 1e-3, "Q between 5 and 20");
-    }
-    if (targets.cyclic) {
-      const double log_h = growing_root(
-          [&](double log_h_po) {
-            Pm4SandParameters trial = sand;
-            trial.contraction_rate = std::exp(log_h_po);
-            const double most = 4.0 * targets.cyclic->cycles;
-            return std::log(cycles_to_failure(trial, *targets.cyclic, targets.cyclic->csr, most) /
-                            targets.cyclic->cycles);
-          },
-          std::log(sand.contraction_rate), 0.5, std::log(1e-3), std::log(1e3), 2e-3, "h_po between 0.001 and 1000");
-      sand.contraction_rate = std::exp(log_h);
-    }
-    if (std::fabs(sand.Q - before.Q) < 2e-3 &&
-        std::fabs(std::log(sand.contraction_rate / before.contraction_rate)) < 5e-3) {
-      break;
-    }
-  }
+  Calibrated result = calibrated(*given, targets);
+  Json by_Q;
+  if (targets.cyclic && !targets.residual.empty() && !(result.cyclic_reached && result.residual_reached))
+    result = nearest_compromise(*given, targets, by_Q);
+  const Pm4SandParameters& sand = result.sand;
 
-  nlohmann::ordered_json out;
+  Json out;
   out["hpo"] = sand.contraction_rate;
   out["Q"] = sand.Q;
   out["R"] = sand.R;
@@ -225,7 +271,7 @@ int run_calibration(const CalibrationOptions& options) {
     write_text_file(path("cyclic_strength.csv"), csv);
   }
   if (!targets.residual.empty()) {
-    out["residual_strength"] = nlohmann::ordered_json::array();
+    out["residual_strength"] = Json::array();
     for (const StrengthTarget& t : targets.residual) {
       out["residual_strength"].push_back(
           {{"vertical_effective_stress", t.vertical_effective_stress},
@@ -235,9 +281,27 @@ int run_calibration(const CalibrationOptions& options) {
     charts.push_back(strength_curve(sand, targets, csv));
     write_text_file(path("residual_strength.csv"), csv);
   }
+  std::string words;
+  const bool reached = result.cyclic_reached && result.residual_reached;
+  if (!reached) {
+    out["reached"] = Json::object();
+    if (targets.cyclic) out["reached"]["cyclic_strength"] = result.cyclic_reached;
+    if (!targets.residual.empty()) out["reached"]["residual_strength"] = result.residual_reached;
+    out["asked_for_alone"] = asked_for(*given, targets, words);
+    if (!by_Q.is_null()) out["by_Q"] = by_Q;
+  }
+  if (sand.contraction_rate > usual_hpo)
+    add_warning(
+        fmt::format("calibrate: hpo = {:.3g} is far above what soils have (0.05 to about 6): the cyclic strength is "
+                    "high for this relative density and Q",
+                    sand.contraction_rate));
+  note_equal_strengths(out, targets);
+  out["materials"] = materials_block(file.text(), sand);
+  out["warnings"] = warnings();
   write_text_file(path("calibration.svg"), svg_of(charts));
   write_text_file(path("calibration.json"), out.dump(2) + "\n");
-  std::cout << out.dump(2) << "\n";
+  if (!quiet() || reached) std::cout << out.dump(2) << "\n";
+  if (!reached) throw ComputationError(what_was_reached(out, words, path("calibration.json")));
   return exit_done;
 }
 

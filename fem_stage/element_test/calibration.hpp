@@ -20,8 +20,9 @@ struct CalibrationOptions {
   std::filesystem::path output_folder;  // created if need be; gets calibration.json, two CSV curves and a picture
 };
 
-// Returns exit_done. Throws InputError for an unusable target file, ComputationError when no parameter in its
-// admissible range reaches a target (the message says how near it came).
+// Returns exit_done. calibration.json has the values found, what is reached with them and a "materials" block for
+// fem.json. Throws InputError for an unusable target file, ComputationError when the targets cannot be met, or not
+// together; all files are written before that, with the nearest values and what each target asks for by itself.
 int run_calibration(const CalibrationOptions& options);
 
 }  // namespace tailrun::fem

@@ -88,6 +88,7 @@ void check_mesh(Mesh& mesh, const std::string& source) {
   if (mesh.elements() == 0)
     throw InputError(fmt::format("{}: the mesh has no quadrilaterals in any physical surface", source));
   std::vector<char> used(mesh.nodes(), 0);
+  std::set<std::array<std::int64_t, 4>> shapes;
   for (std::size_t e = 0; e < mesh.elements(); ++e) {
     double corners[8];
     corners_of(mesh, {}, e, corners);
@@ -107,7 +108,14 @@ void check_mesh(Mesh& mesh, const std::string& source) {
                       "geometry or its mesh sizes there",
                       source, e, mesh.region_names[static_cast<std::size_t>(mesh.region[e])], c[0], c[1]));
     }
-    for (int a = 0; a < 4; ++a) used[static_cast<std::size_t>(mesh.quads[4 * e + a])] = 1;
+    std::array<std::int64_t, 4> shape;
+    for (std::size_t a = 0; a < 4; ++a) shape[a] = mesh.quads[4 * e + a];
+    for (const auto node : shape) used[static_cast<std::size_t>(node)] = 1;
+    std::sort(shape.begin(), shape.end());
+    if (!shapes.insert(shape).second)
+      throw InputError(
+          fmt::format("{}: the element at ({:.4g}, {:.4g}) is there twice; it would be twice as stiff and heavy",
+                      source, mesh.centre(e)[0], mesh.centre(e)[1]));
   }
   for (std::size_t n = 0; n < mesh.nodes(); ++n)
     if (!used[n])

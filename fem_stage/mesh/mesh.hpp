@@ -30,9 +30,9 @@ struct Mesh {
 };
 
 // Turns clockwise quadrilaterals round, and throws InputError (exit 1) for what no analysis can use: no elements,
-// degenerate or non-convex elements, nodes in no element, edges shared by more than two elements, and boundary edges
-// that belong to no named line (a hole: a surface that was left out of the physical groups). `source` names the mesh
-// file.
+// degenerate or non-convex elements, the same element twice, nodes in no element, edges shared by more than two
+// elements, and boundary edges that belong to no named line (a hole: a surface that was left out of the physical
+// groups). `source` names the mesh file.
 void check_mesh(Mesh& mesh, const std::string& source);
 
 // Smallest sine of a corner angle, signed by the orientation of the corner: 1 for a rectangle, <= 0 when inverted.

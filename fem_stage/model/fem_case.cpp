@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/case_file.hpp"
 #include "common/error.hpp"
@@ -15,6 +16,17 @@ std::vector<std::string> keys_of(const auto& map) {
   std::vector<std::string> keys;
   for (const auto& [key, value] : map) keys.push_back(key);
   return keys;
+}
+
+// A request that no machine carries out is refused with its numbers, before anything is computed.
+constexpr double most_steps = 1e8;     // at 10 us for the smallest model: a quarter of an hour
+constexpr double most_elements = 2e7;  // of a rectangle: at some 3 kB each, 60 GB
+
+void limit_steps(const CaseNode& node, const std::string& key, double length, double step, const char* what) {
+  if (!(length / step <= most_steps))
+    node.fail(key,
+              fmt::format("found {:g} s, which makes {:.3g} steps of the {} of {:g} s, but at most {:g} are allowed",
+                          step, length / step, what, length, most_steps));
 }
 
 RectangleMesh read_rectangle(const CaseNode& node) {
@@ -42,7 +54,10 @@ MeshOptions read_mesh(const CaseNode& node, const std::string& size) {
   MeshOptions mesh;
   if (node.has("geometry") + node.has("file") + node.has("rectangle") != 1)
     node.fail("", "give one of 'geometry' (a .geo file), 'file' (a .msh file) and 'rectangle'");
-  if (node.has("geometry")) mesh.geometry = node.file("geometry");
+  if (node.has("geometry")) {
+    mesh.geometry = node.file("geometry");
+    mesh.time_limit = node.number_or("time_limit", "s", {0.0, 1e6, true, false}, mesh.time_limit);
+  }
   if (node.has("file")) mesh.file = node.file("file");
   if (node.has("rectangle")) mesh.rectangle = read_rectangle(node.object("rectangle"));
   mesh.snap_to_phreatic_line = node.number_or("snap_to_phreatic_line", "m", Range::non_negative(), 0.0);
@@ -59,10 +74,17 @@ MeshOptions read_mesh(const CaseNode& node, const std::string& size) {
   if (!size.empty() && size != "default" && !sizes.contains(size))
     throw InputError(fmt::format("--size {}: {} has no such entry in /mesh/sizes.{} It has: {}", size, "the case",
                                  did_you_mean(size, keys_of(sizes)), joined(keys_of(sizes))));
-  if (mesh.rectangle && mesh.parameters.contains("refine")) {
-    const int refine = static_cast<int>(mesh.parameters["refine"]);
-    mesh.rectangle->columns *= refine;
-    for (auto& layer : mesh.rectangle->layers) layer.rows *= refine;
+  if (mesh.rectangle) {
+    const double refine = mesh.parameters.contains("refine") ? mesh.parameters["refine"] : 1.0;
+    double rows = 0.0;
+    for (const auto& layer : mesh.rectangle->layers) rows += refine * layer.rows;
+    const double columns = refine * mesh.rectangle->columns;
+    if (columns * rows > most_elements)
+      node.fail("rectangle",
+                fmt::format("{:g} columns and {:g} rows make {:.3g} elements, but at most {:g} are allowed", columns,
+                            rows, columns * rows, most_elements));
+    mesh.rectangle->columns = static_cast<int>(columns);
+    for (auto& layer : mesh.rectangle->layers) layer.rows = static_cast<int>(refine * layer.rows);
   }
   return mesh;
 }
@@ -86,6 +108,7 @@ GeostaticOptions read_geostatic(const CaseNode& node) {
   out.settle_time = node.number_or("settle_time", "s", Range::non_negative(), out.settle_time);
   out.settle_step = node.number_or("settle_step", "s", Range::positive(), out.settle_step);
   out.tolerance = node.number_or("tolerance", "1", Range::positive(), out.tolerance);
+  limit_steps(node, "settle_step", out.settle_time, out.settle_step, "settling");
   return out;
 }
 
@@ -93,10 +116,11 @@ ShakeOptions read_shake(const CaseNode& node) {
   ShakeOptions out;
   if (node.has("motion")) {
     out.motion = node.file("motion");
-    out.peak_acceleration = node.number_or("peak_acceleration", "m/s2", Range::non_negative(), 0.0);
+    out.peak_acceleration = node.number_if("peak_acceleration", "m/s2", Range::positive()).value_or(0.0);
   }
   out.duration = node.number("duration", "s", Range::positive());
   out.time_step = node.number_or("time_step", "s", Range::positive(), out.time_step);
+  limit_steps(node, "time_step", out.duration, out.time_step, "shaking");
   const CaseNode newmark = node.object_or_empty("newmark");
   out.gamma = newmark.number_or("gamma", "1", Range::between(0.5, 2.0), out.gamma);
   out.beta = newmark.number_or("beta", "1", Range::between(0.25, 2.0), 0.25 * (out.gamma + 0.5) * (out.gamma + 0.5));
@@ -121,6 +145,13 @@ ConsolidationOptions read_consolidation(const CaseNode& node) {
   out.first_step = node.number_or("first_step", "s", Range::positive(), out.first_step);
   out.largest_step = node.number_or("largest_step", "s", Range::positive(), out.largest_step);
   out.growth = node.number_or("growth", "1", Range::between(1.0, 10.0), out.growth);
+  limit_steps(node, "largest_step", out.duration, out.largest_step, "consolidation");
+  // Steps grow every four: their number until the largest, or, without growth, to the end.
+  if (const double first = std::min(out.first_step, out.largest_step); out.growth - 1.0 < 1e-6)
+    limit_steps(node, "first_step", out.duration, first, "consolidation");
+  else if (4.0 * std::log(out.largest_step / first) / std::log(out.growth) > most_steps)
+    node.fail("growth", fmt::format("found {:g}, with which steps of {:g} s grow too slowly to {:g} s", out.growth,
+                                    first, out.largest_step));
   out.ratio_limit = node.number_or("ratio_limit", "1", Range::non_negative(), out.ratio_limit);
   out.rest_velocity = node.number_or("rest_velocity", "m/s", Range::positive(), out.rest_velocity);
   out.post_shaking = node.boolean_or("post_shaking", out.post_shaking);

@@ -27,6 +27,7 @@ struct MeshOptions {
   std::filesystem::path file;                // .msh, or
   std::optional<RectangleMesh> rectangle;    // made here
   std::map<std::string, double> parameters;  // ONELAB numbers for the geometry
+  double time_limit = 600.0;                 // s, for gmsh on the geometry
   double snap_to_phreatic_line = 0.0;        // m: nodes nearer than this to the line are moved onto it; 0 = off
 };
 

@@ -8,8 +8,11 @@
 #include <map>
 
 #include "common/error.hpp"
+#include "common/warnings.hpp"
 #include "fem_stage/boundary/phreatic_line.hpp"
 #include "fem_stage/mesh/gmsh_mesh.hpp"
+#include "fem_stage/model/mesh_joints.hpp"
+#include "fem_stage/model/output_places.hpp"
 #include "fem_stage/model/soft_fluid.hpp"
 #include "fem_stage/model/stage_freedoms.hpp"
 
@@ -60,6 +63,12 @@ void gather_loads(const FemCase& options, Model& model) {
   for (const auto& pond : options.boundaries.ponds)
     for (const auto& line : pond.lines) {
       const auto edges = boundary_edges(model.mesh, model.thickness, line, pond.where);
+      if (std::none_of(edges.begin(), edges.end(), [&](const BoundaryEdge& edge) {
+            return std::min(model.mesh.y(static_cast<std::size_t>(edge.a)),
+                            model.mesh.y(static_cast<std::size_t>(edge.b))) < pond.level;
+          }))
+        add_warning(fmt::format("{}: line '{}' lies above the level {:g} m, so that no water stands on it", pond.where,
+                                line, pond.level));
       model.loads.push_back(
           {pond_forces(model.mesh, edges, pond.level, options.fluid_density * options.gravity), {}, true, true});
     }
@@ -125,8 +134,12 @@ void gather_base(Model& model) {
   model.base_area.assign(model.base_nodes.size(), 0.0);
   for (const auto& [a, b] : mesh.lines.at(model.options->boundaries.base_line)) {
     const auto ia = static_cast<std::size_t>(a), ib = static_cast<std::size_t>(b);
-    const double half = 0.5 * std::hypot(mesh.x(ia) - mesh.x(ib), mesh.y(ia) - mesh.y(ib)) *
-                        edge_thickness.at({std::min(a, b), std::max(a, b)});
+    const auto thickness = edge_thickness.find({std::min(a, b), std::max(a, b)});
+    if (thickness == edge_thickness.end())
+      throw InputError(
+          fmt::format("/boundaries/base: an edge of line '{}' at ({:.4g}, {:.4g}) is no side of an element",
+                      model.options->boundaries.base_line, mesh.x(ia), mesh.y(ia)));
+    const double half = 0.5 * std::hypot(mesh.x(ia) - mesh.x(ib), mesh.y(ia) - mesh.y(ib)) * thickness->second;
     for (const auto node : {a, b})
       model.base_area[static_cast<std::size_t>(
           std::lower_bound(model.base_nodes.begin(), model.base_nodes.end(), node) - model.base_nodes.begin())] += half;
@@ -141,6 +154,8 @@ Model build_model(const FemCase& options, const std::filesystem::path& mesh_file
   model.mesh = read_gmsh(mesh_file);
   Mesh& mesh = model.mesh;
   check_regions(options, mesh);
+  check_joints(mesh, options.boundaries, mesh_file.string());
+  check_output_places(mesh, options);
   if (!options.phreatic_line.empty() && options.mesh.snap_to_phreatic_line > 0.0)
     spdlog::info("{} nodes moved onto the phreatic line",
                  snap_to_phreatic_line(mesh, options.phreatic_line, options.mesh.snap_to_phreatic_line));

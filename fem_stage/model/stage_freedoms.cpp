@@ -78,7 +78,7 @@ Freedoms common_freedoms(const Model& model, When stage) {
   const double tolerance = 1e-3 * *std::min_element(model.elements.size.begin(), model.elements.size.end());
   constexpr Freedom displacement[] = {freedom_ux, freedom_uy};
   for (const auto& column : separate_columns(model.mesh, nodes_of_regions(model.mesh, boundaries.tied_column_regions)))
-    tie_equal_heights(freedoms, model.mesh, column, tolerance, displacement);
+    tie_equal_heights(freedoms, model.mesh, column, tolerance, displacement, "/boundaries/tied_column_regions");
   std::set<std::int64_t> periodic;
   for (const auto& line : boundaries.periodic_lines) {
     const auto nodes = model.mesh.nodes_of_line(line);
@@ -86,7 +86,7 @@ Freedoms common_freedoms(const Model& model, When stage) {
   }
   constexpr Freedom all[] = {freedom_ux, freedom_uy, freedom_p};
   const std::vector<std::int64_t> tied(periodic.begin(), periodic.end());
-  tie_equal_heights(freedoms, model.mesh, tied, tolerance, all);
+  tie_equal_heights(freedoms, model.mesh, tied, tolerance, all, "/boundaries/periodic_lines");
   return freedoms;
 }
 

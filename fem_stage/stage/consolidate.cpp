@@ -9,8 +9,10 @@
 #include <set>
 
 #include "common/progress.hpp"
+#include "common/warnings.hpp"
 #include "fem_stage/model/stage_freedoms.hpp"
 #include "fem_stage/output/history.hpp"
+#include "fem_stage/output/snapshot_plan.hpp"
 #include "fem_stage/output/state_file.hpp"
 
 namespace tailrun::fem {
@@ -49,8 +51,8 @@ ConsolidationReport run_consolidation(const Model& model, MaterialPoints& points
   report.first_ratio = report.last_ratio = largest_ratio(model, state);
   const std::vector<double> first_displacement = state.displacement;
   if (report.start_velocity > options.rest_velocity)
-    spdlog::warn("consolidation starts from a state that moves at up to {:.3g} m/s; its motion is left out",
-                 report.start_velocity);
+    add_warning(fmt::format("consolidation starts from a state that moves at up to {:.3g} m/s; its motion is left out",
+                            report.start_velocity));
 
   points.set_post_shaking(options.post_shaking);
   const Freedoms freedoms = consolidation_freedoms(model);
@@ -81,7 +83,14 @@ ConsolidationReport run_consolidation(const Model& model, MaterialPoints& points
   record();
   std::set<double> wanted;
   for (const double after : options.snapshots)
-    if (after > 0.0 && after < options.duration) wanted.insert(report.start_time + after);
+    if (after < options.duration)
+      wanted.insert(report.start_time + after);
+    else
+      add_warning(
+          fmt::format("/consolidation/snapshots: {:g} s: not before the end ({:g} s): not written; the last state is "
+                      "consolidated.h5",
+                      after, options.duration));
+  const SnapshotPlan plan(std::vector<double>(wanted.begin(), wanted.end()));
 
   Progress progress("consolidate", options.duration, "s");
   const double end = report.start_time + options.duration;
@@ -110,7 +119,7 @@ ConsolidationReport run_consolidation(const Model& model, MaterialPoints& points
     record();
     if (!wanted.empty() && state.time >= *wanted.begin()) {
       wanted.erase(wanted.begin());
-      save(fmt::format("snapshot_t{:06.3f}.h5", state.time));
+      save(plan.name(state.time));
     }
     if (++good % steps_before_growth == 0) length = std::min(options.largest_step, length * options.growth);
     progress.update(state.time - report.start_time, ++steps, fmt::format("largest r_u {:.3f}", report.last_ratio));

@@ -9,6 +9,7 @@
 
 #include "common/error.hpp"
 #include "common/progress.hpp"
+#include "common/warnings.hpp"
 #include "fem_stage/boundary/phreatic_line.hpp"
 #include "fem_stage/model/stage_freedoms.hpp"
 #include "fem_stage/solver/newmark.hpp"
@@ -198,7 +199,10 @@ GeostaticReport run_geostatic(const Model& given, MaterialPoints& points, State&
       const StepResult result =
           newmark.step(state, points, forces, std::min(options.settle_step, options.settle_time - state.time));
       if (!result.converged) {
-        spdlog::warn("settling stopped at {:.3g} s: {}", state.time, result.reason);
+        add_warning(
+            fmt::format("/geostatic/settle_time: settling stopped at {:.3g} of {:g} s: {}; what is left out of balance "
+                        "is final_residual_of_weight",
+                        state.time, options.settle_time, result.reason));
         break;
       }
       progress.update(state.time, newmark.counts().steps);

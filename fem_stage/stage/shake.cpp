@@ -10,6 +10,7 @@
 #include "common/error.hpp"
 #include "common/progress.hpp"
 #include "fem_stage/model/stage_freedoms.hpp"
+#include "fem_stage/output/snapshot_plan.hpp"
 #include "fem_stage/output/state_file.hpp"
 #include "fem_stage/stage/free_field.hpp"
 
@@ -93,9 +94,33 @@ class Stepper {
 Motion case_motion(const FemCase& options) {
   if (options.shake.motion.empty()) return {.name = "none", .time_step = 0.0, .acceleration = {}, .velocity = {}};
   Motion motion = read_motion(options.shake.motion);
+  const double recorded = motion.peak_acceleration();
   if (options.shake.peak_acceleration > 0.0)
     motion = scaled_to_peak(std::move(motion), options.shake.peak_acceleration);
+  warn_about_motion(motion, recorded, options.shake.time_step, options.shake.duration);
   return motion;
+}
+
+void check_shake_output(const FemCase& options, double state_bytes, const std::filesystem::path& folder) {
+  const OutputOptions& output = options.output;
+  const ShakeOptions& shake = options.shake;
+  const double most = shake.duration / std::max(output.history_interval, shake.time_step);
+  const double columns = 1.0 + 7.0 * static_cast<double>(output.points.size()) +
+                         6.0 * static_cast<double>(output.elements.size()) + 12.0;  // quality.csv's
+  const double regular =
+      output.snapshot_interval > 0.0 ? shake.duration / std::max(output.snapshot_interval, shake.time_step) : 0.0;
+  const double snapshots = regular + static_cast<double>(output.snapshots.size());
+  constexpr double number = 12.0;  // bytes of one in a table
+  const double bytes = snapshots * state_bytes + most * columns * number;
+  std::filesystem::create_directories(folder);
+  std::error_code unknown;
+  const auto space = std::filesystem::space(folder.empty() ? "." : folder, unknown);
+  if (unknown || bytes <= static_cast<double>(space.available)) return;
+  throw InputError(fmt::format(
+      "/output: {:.3g} snapshots of {:.3g} MB and {:.3g} rows of histories make {:.3g} GB, but {} has {:.3g} GB free; "
+      "ask "
+      "for fewer (/output/snapshot_interval, history_interval)",
+      snapshots, 1e-6 * state_bytes, most, 1e-9 * bytes, folder.string(), 1e-9 * static_cast<double>(space.available)));
 }
 
 ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, const Motion& motion,
@@ -163,25 +188,30 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
   std::size_t next_snapshot = 0;
   double next_record = 0.0, next_regular = output.snapshot_interval;
   const double slack = 1e-6 * options.time_step;
+  const SnapshotPlan plan({options.duration, options.time_step}, output.snapshots, output.snapshot_interval);
+  // An interval far below the step means every step; adding it up to the next one would take for ever.
+  const double history_interval = std::max(output.history_interval, 1e-3 * options.time_step),
+               snapshot_interval =
+                   output.snapshot_interval > 0.0 ? std::max(output.snapshot_interval, 1e-3 * options.time_step) : 0.0;
   const auto write_outputs = [&] {
     const auto output_start = std::chrono::steady_clock::now();
     const BaseMotion base = rigid_base_motion(model, motion, state.time, state.rigid_displacement);
     if (state.time >= next_record - slack) {
       history.record(state, base);
       quality.record(state, newmark.counts(), seconds_since(start));
-      while (next_record <= state.time + slack) next_record += output.history_interval;
+      while (next_record <= state.time + slack) next_record += history_interval;
     }
     bool wanted = false;
     while (next_snapshot < output.snapshots.size() && state.time >= output.snapshots[next_snapshot] - slack) {
       ++next_snapshot;
       wanted = true;
     }
-    if (output.snapshot_interval > 0.0 && state.time >= next_regular - slack) {
-      next_regular += output.snapshot_interval;
+    if (snapshot_interval > 0.0 && state.time >= next_regular - slack) {
+      next_regular += snapshot_interval;
       wanted = true;
     }
     if (wanted) {
-      const std::string name = fmt::format("snapshot_t{:06.3f}.h5", state.time);
+      const std::string name = plan.name(state.time);
       write_state(folder / name, model, state, points, base.velocity, base.acceleration, base.displacement);
       report.snapshots.push_back(name);
     }
@@ -190,8 +220,7 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
   if (state.time > 0.0) {  // a restart: what lies before it has been written
     while (next_snapshot < output.snapshots.size() && output.snapshots[next_snapshot] <= state.time + slack)
       ++next_snapshot;
-    while (output.snapshot_interval > 0.0 && next_regular <= state.time + slack)
-      next_regular += output.snapshot_interval;
+    while (snapshot_interval > 0.0 && next_regular <= state.time + slack) next_regular += snapshot_interval;
     next_record = state.time;
   }
   write_outputs();

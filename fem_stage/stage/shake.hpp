@@ -25,6 +25,10 @@ struct ShakeReport {
 // The motion as the case wants it: read, scaled; one without values when the case has none. Throws InputError.
 Motion case_motion(const FemCase& options);
 
+// Throws InputError when the snapshots and histories that the case asks for need more room than `folder`'s disk has
+// free. `state_bytes`: size of one state file of this model.
+void check_shake_output(const FemCase& options, double state_bytes, const std::filesystem::path& folder);
+
 // Writes snapshot_t*.h5, history.csv and quality.csv into `folder`. On failure of the computation the last good state
 // is written as last_good_t*.h5 and `failure` says why.
 ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, const Motion& motion,

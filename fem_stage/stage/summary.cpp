@@ -27,11 +27,13 @@ Json mesh_summary(const Mesh& mesh) {
 }
 
 Json geostatic_summary(const GeostaticReport& report) {
-  return {
-      {"elastic_residual_of_weight", report.elastic_residual},  {"switch_residual_of_weight", report.switch_residual},
-      {"final_residual_of_weight", report.final_residual},      {"settlement_m", report.settlement},
-      {"largest_effective_tension_Pa", report.largest_tension}, {"seconds", report.seconds},
-      {"warnings", warnings()}};
+  return {{"elastic_residual_of_weight", report.elastic_residual},
+          {"switch_residual_of_weight", report.switch_residual},
+          {"final_residual_of_weight", report.final_residual},
+          {"settlement_m", report.settlement},
+          {"largest_effective_tension_Pa", report.largest_tension},
+          {"seconds", report.seconds},
+          {"warnings", warnings()}};
 }
 
 Json consolidation_summary(const ConsolidationReport& report) {

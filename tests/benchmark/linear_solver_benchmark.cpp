@@ -38,7 +38,7 @@ struct Systems {
 };
 
 Systems assemble(const FemCase& options, const std::filesystem::path& mesh_file) {
-  mesh_geometry(options.mesh.geometry, options.mesh.parameters, mesh_file);
+  mesh_geometry(options.mesh.geometry, {.parameters = options.mesh.parameters}, mesh_file);
   const Model model = build_model(options, mesh_file);
   MaterialPoints points = make_material_points(model);
   State state;

@@ -8,18 +8,50 @@ import numpy as np
 STANDARD_GRAVITY = 9.81  # m/s2, as everywhere in tailrun
 
 
+NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
+# As fem_stage reads them (common/motion_units.cpp), in g; what is not here is refused.
+UNITS = (
+    (r"(FRACTION OF )?G('S|S)?", 1.0),
+    (r"GALS?|CM ?/ ?(S|SEC) ?(/ ?(S|SEC)|(\*\*|\^)? ?2)", 0.01 / STANDARD_GRAVITY),
+    (r"M ?/ ?(S|SEC) ?(/ ?(S|SEC)|(\*\*|\^)? ?2)", 1.0 / STANDARD_GRAVITY),
+)
+
+
+def number(word):
+    """A number as Fortran or C writes it."""
+    return float(word.upper().replace("D", "E"))
+
+
 def read_at2(path):
-    """Acceleration (g) and time step (s) of a PEER AT2 file; values beyond NPTS are dropped, missing ones an error."""
+    """Acceleration (g) and time step (s) of a PEER AT2 file; values beyond NPTS are dropped, missing ones an error, and so are
+    units that are not known. ValueError says which file and line."""
     lines = Path(path).read_text().replace("\r", "").split("\n")
-    header = lines[3]
-    numbers = [float(word) for word in re.findall(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?", header)]
-    if len(numbers) < 2:
-        raise ValueError(f"{path}: line 4 has no NPTS and DT: {header!r}")
-    count, step = int(numbers[0]), numbers[1]
-    values = np.array(" ".join(lines[4:]).split(), dtype=float)
-    if values.size < count:
-        raise ValueError(f"{path}: {values.size} values, NPTS says {count}")
-    return values[:count], step
+    place = next((i for i, line in enumerate(lines[:12]) if re.search(r"\bNPTS\b", line.upper())), None)
+    header = lines[place].upper() if place is not None else ""
+    modern = re.search(rf"NPTS\s*=\s*(\d+).*?DT\s*=\s*({NUMBER})\s*(\w*)", header)
+    old = re.search(rf"^\s*(\d+)\s+({NUMBER})\s*,?\s+NPTS()", header)
+    if not (modern or old):
+        raise ValueError(f"{path}: no line with 'NPTS= n, DT= s SEC' or 'n dt NPTS, DT' among the first twelve")
+    count, step, unit = (modern or old).groups()
+    factors = {"": 1.0, "S": 1.0, "SEC": 1.0, "SECS": 1.0, "SECONDS": 1.0, "MS": 1e-3, "MSEC": 1e-3}
+    if unit not in factors:
+        raise ValueError(f"{path}: line {place + 1}: {unit} after the time step is no unit of time")
+    factor = 1.0
+    for i, line in enumerate(lines[:place]):
+        stated = re.search(r"\bUNITS?\b\s*(?:OF|IN|ARE|:|=)*\s*[(\[]?\s*(.+)", line.upper())
+        if stated:
+            known = [f for pattern, f in UNITS if re.match(rf"(?:{pattern})(?![A-Z0-9/])", stated.group(1))]
+            if not known or re.search(r"\bVELOCITY|\bDISPLACEMENT", line.upper()):
+                raise ValueError(f"{path}: line {i + 1}: not an acceleration in g, cm/s2 or m/s2: {line!r}")
+            factor = known[0]
+    values = []
+    for i, line in enumerate(lines[place + 1 :], place + 2):
+        if re.sub(NUMBER, "", line).strip():
+            raise ValueError(f"{path}: line {i}: not numbers: {line!r}")
+        values += [number(word) for word in re.findall(NUMBER, line)]
+    if len(values) < int(count):
+        raise ValueError(f"{path}: {len(values)} values, NPTS says {count}")
+    return factor * np.array(values[: int(count)]), number(step) * factors[unit]
 
 
 def write_at2(path, acceleration, step, title):

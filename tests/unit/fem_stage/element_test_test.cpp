@@ -133,4 +133,35 @@ TEST_CASE("calibration: finds h_po and Q again from the strengths they give") {
   for (const char* name : {"cyclic_strength.csv", "residual_strength.csv", "calibration.svg"}) {
     CHECK(fs::file_size(folder() / "calibration" / name) > 100);
   }
+  const auto& block = found.at("materials").at("calibrated");
+  CHECK(block.at("hpo") == found.at("hpo"));
+  CHECK(block.at("G0") == 476);
+  CHECK(!found.contains("asked_for_alone"));
+}
+
+TEST_CASE("calibration: targets that conflict leave what was reached and what each asks for") {
+  const auto file = written(R"({"material": {"model": "pm4sand", "relative_density": 0.4, "hpo": 0.5, "density": 1930},
+      "cyclic_strength": {"csr": 0.17}, "residual_strength": {"shear_strain": 0.2,
+      "targets": [{"vertical_effective_stress": 100e3, "shear_stress": 14e3}]}})");
+  std::string message;
+  try {
+    run_calibration({file, folder() / "conflict"});
+  } catch (const ComputationError& error) {
+    message = error.what();
+  }
+  CHECK(message.find("cannot be met together") != std::string::npos);
+  CHECK(message.find("the cyclic strength alone asks for hpo = 5.6") != std::string::npos);
+  const auto found = nlohmann::json::parse(std::ifstream(folder() / "conflict" / "calibration.json"));
+  CHECK(found.at("reached").at("cyclic_strength") == true);
+  CHECK(found.at("reached").at("residual_strength") == false);
+  CHECK(found.at("cyclic_strength").at("cycles").get<double>() == doctest::Approx(15.0).epsilon(0.03));
+  CHECK(found.at("asked_for_alone").at("cyclic_strength").at("hpo").get<double>() ==
+        doctest::Approx(5.65).epsilon(0.01));
+  double nearest = 10.0;
+  for (const auto& row : found.at("by_Q"))
+    nearest = std::min(nearest, std::abs(std::log(row.at("residual_over_target").get<double>())));
+  const auto& strength = found.at("residual_strength").at(0);
+  CHECK(std::abs(std::log(strength.at("shear_stress").get<double>() / strength.at("target").get<double>())) ==
+        doctest::Approx(nearest));
+  CHECK(found.at("materials").at("calibrated").at("relative_density") == 0.4);
 }

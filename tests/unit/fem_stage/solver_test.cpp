@@ -41,7 +41,7 @@ TEST_CASE("freedoms: fixed stays fixed through ties, equal heights share an equa
   freedoms.fix(1, freedom_uy);
   const std::vector<std::int64_t> all = {0, 1, 2, 3};
   constexpr Freedom both[] = {freedom_ux, freedom_uy};
-  tie_equal_heights(freedoms, mesh, all, 1e-9, both);
+  tie_equal_heights(freedoms, mesh, all, 1e-9, both, "test");
   CHECK(freedoms.fixed(0, freedom_uy));
   CHECK_FALSE(freedoms.fixed(2, freedom_uy));
   const auto equations = freedoms.number(true, true);

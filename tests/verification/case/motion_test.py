@@ -57,3 +57,27 @@ with tempfile.TemporaryDirectory() as name:
         raise SystemExit("a file with missing values was read")
     except ValueError:
         pass
+
+# Motions of other makes: what they say about units is followed or refused.
+with tempfile.TemporaryDirectory() as name:
+    path = pathlib.Path(name) / "other.AT2"
+    for line3, line4, values, wanted, step_wanted in (
+        ("ACCELERATION TIME SERIES IN UNITS OF CM/SEC**2", "NPTS= 2, DT= 0.5000D-02 SEC", "98.1 -981.0", (0.1, -1.0), 0.005),
+        ("ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.1 Hz", " 2  .0100  NPTS, DT", ".1-.2D-01", (0.1, -0.02), 0.01),
+        ("UNITS: M/S/S", "NPTS= 2, DT= 5 MSEC", "+9.81 0", (1.0, 0.0), 0.005),
+    ):
+        path.write_text(f"one\ntwo\n{line3}\n{line4}\n{values}\n")
+        found, step = gm.read_at2(path)
+        assert np.allclose(found, wanted) and abs(step - step_wanted) < 1e-12, (line3, found, step)
+    for line3, line4, values in (
+        ("VELOCITY TIME SERIES IN UNITS OF CM/SEC", "NPTS= 2, DT= .01 SEC", "1 2"),
+        ("UNITS OF FURLONGS", "NPTS= 2, DT= .01 SEC", "1 2"),
+        ("UNITS OF G", "NPTS= 2, DT= 100 HZ", "1 2"),
+        ("UNITS OF G", "NPTS= 2, DT= .01 SEC", "1 x"),
+    ):
+        path.write_text(f"one\ntwo\n{line3}\n{line4}\n{values}\n")
+        try:
+            gm.read_at2(path)
+            raise SystemExit(f"was read: {line3}, {line4}, {values}")
+        except ValueError:
+            pass

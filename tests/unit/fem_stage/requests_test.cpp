@@ -1,0 +1,160 @@
+// What a case asks for: nodes that should hang together, places to look at, snapshots, and amounts that no machine has.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+
+#include "common/error.hpp"
+#include "common/warnings.hpp"
+#include "fem_stage/mesh/gmsh_mesh.hpp"
+#include "fem_stage/model/mesh_joints.hpp"
+#include "fem_stage/model/model.hpp"
+#include "fem_stage/output/snapshot_plan.hpp"
+#include "fem_stage/stage/shake.hpp"
+
+using namespace tailrun;
+using namespace tailrun::fem;
+
+namespace {
+
+const std::filesystem::path folder = std::filesystem::temp_directory_path();
+
+// Two blocks of 2 x 4 quadrilaterals side by side, the right one moved by (dx, dy). Lines: bottom, left, right, top,
+// seam.
+Mesh blocks(double dx, double dy) {
+  Mesh mesh;
+  mesh.region_names = {"s"};
+  for (int block = 0; block < 2; ++block) {
+    const auto first = static_cast<std::int64_t>(mesh.nodes());
+    const auto node = [&](int i, int j) { return first + i + 3 * j; };
+    for (int j = 0; j < 5; ++j)
+      for (int i = 0; i < 3; ++i)
+        mesh.position.insert(mesh.position.end(), {i + 2.0 * block + block * dx, j + block * dy});
+    for (int j = 0; j < 4; ++j) {
+      for (int i = 0; i < 2; ++i) {
+        for (const auto n : {node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)}) mesh.quads.push_back(n);
+        mesh.region.push_back(0);
+      }
+      mesh.lines[block == 0 ? "left" : "right"].push_back({node(2 * block, j), node(2 * block, j + 1)});
+      mesh.lines[block == 0 ? "seam_left" : "seam_right"].push_back(
+          {node(2 - 2 * block, j), node(2 - 2 * block, j + 1)});
+    }
+  }
+  return mesh;
+}
+
+std::string refusal(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::filesystem::path case_file(const std::string& shake, const std::string& more = "") {
+  std::ofstream(folder / "tailrun_requests.json") << fmt::format(
+      R"({{ "mesh": {{ "rectangle": {{ "width": 4, "height": 4, "columns": 4, "rows": 4, "region": "s" }} }},
+      "materials": {{ "s": {{ "model": "linear_elastic", "shear_modulus": 1e7, "density": 1900 }} }},
+      "regions": {{ "s": {{ "material": "s", "permeability": [1e-6] }} }},
+      "boundaries": {{ "base": {{ "line": "bottom", "type": "rigid" }}, "roller_lines": ["left", "right"] }},
+      {} "shake": {{ {} }} }})",
+      more, shake);
+  return folder / "tailrun_requests.json";
+}
+
+std::string case_refusal(const std::string& shake, const std::string& more = "") {
+  return refusal([&] {
+    const FemCase options = read_fem_case(case_file(shake, more), "");
+    write_rectangle_mesh(*options.mesh.rectangle, folder / "tailrun_requests.msh");
+    build_model(options, folder / "tailrun_requests.msh");
+  });
+}
+
+}  // namespace
+
+TEST_CASE("blocks that only look joined are refused; free-field columns may stand flush") {
+  for (const auto& [dx, dy] : {std::pair{0.0, 0.0}, std::pair{1e-9, 0.0}, std::pair{0.005, 0.002}}) {
+    const Mesh mesh = blocks(dx, dy);
+    CHECK(refusal([&] { check_joints(mesh, {}, "m.msh"); }).find("the mesh is cut: 5 pairs") != std::string::npos);
+    BoundaryOptions beside;
+    beside.free_field.push_back({"seam_left", "seam_right", 0.0, 0.0, 0.0, ""});
+    CHECK(refusal([&] { check_joints(mesh, beside, "m.msh"); }).empty());
+  }
+  CHECK(refusal([&] { check_joints(blocks(0.5, 0.0), {}, "m.msh"); }).empty());
+}
+
+TEST_CASE("nodes without a partner are listed, not left loose") {
+  for (const double off : {0.0, 0.0005, 0.002, 0.01, 0.3}) {
+    const Mesh mesh = blocks(1.0, off);
+    std::vector<std::int64_t> nodes = mesh.nodes_of_line("left");
+    for (const auto node : mesh.nodes_of_line("right")) nodes.push_back(node);
+    Freedoms freedoms(mesh.nodes());
+    constexpr Freedom both[] = {freedom_ux, freedom_uy};
+    const std::string message = refusal([&] { tie_equal_heights(freedoms, mesh, nodes, 1e-3, both, "/here"); });
+    if (off <= 1e-3)
+      CHECK(message.empty());
+    else
+      CHECK_MESSAGE(message.find("/here: 10 of 10 nodes have no partner") == 0, message);
+  }
+}
+
+TEST_CASE("histories far from the mesh are refused with the nearest node") {
+  CHECK(case_refusal(R"("duration": 1)",
+                     R"("output": { "points": { "a": [2, 4], "b": [1.5, 2.5], "c": [-0.9, 0] } },)") == "");
+  for (const char* key : {"points", "elements"}) {
+    const std::string message =
+        case_refusal(R"("duration": 1)", fmt::format(R"("output": {{ "{}": {{ "far": [1004, 4] }} }},)", key));
+    CHECK_MESSAGE(message.find(fmt::format("/output/{}/far", key)) != std::string::npos, message);
+    CHECK(message.find("1000 m off the mesh") != std::string::npos);
+    CHECK(message.find("(4, 4)") != std::string::npos);
+  }
+}
+
+TEST_CASE("snapshots: a name each, and a word for those that will not be as asked") {
+  forget_warnings();
+  const SnapshotPlan usual({8.0, 0.005}, {2.0, 2.5, 8.0}, 1.0);
+  CHECK(usual.name(2.5) == "snapshot_t02.500.h5");
+  CHECK(usual.count() == 9);
+  CHECK(warnings().empty());
+  const SnapshotPlan close({0.01, 0.0004}, {0.002, 0.0024, 0.0028, 0.5}, 0.0);
+  CHECK(close.count() == 3);
+  CHECK(close.name(0.002) == "snapshot_t00.0020.h5");
+  CHECK(close.name(0.0024) == "snapshot_t00.0024.h5");
+  REQUIRE(warnings().size() == 1);
+  CHECK(warnings()[0].find("0.5 s: after the end") != std::string::npos);
+  const SnapshotPlan coarse({1.0, 0.1}, {0.5, 0.52, 0.55}, 0.0);
+  CHECK(coarse.count() == 2);
+  CHECK(warnings().size() == 3);  // between steps; two on one step
+  CHECK(SnapshotPlan(std::vector<double>{1.00001, 1.00002}).name(1.00002) == "snapshot_t01.00002.h5");
+  forget_warnings();
+}
+
+TEST_CASE("amounts beyond any machine are refused with the numbers, before the computation") {
+  CHECK(case_refusal(R"("duration": 8)") == "");
+  CHECK(case_refusal(R"("duration": 8, "time_step": 1e-300)").find("8e+300 steps") != std::string::npos);
+  CHECK(case_refusal(R"("duration": 1e9)").find("/shake/time_step") != std::string::npos);
+  CHECK(case_refusal(R"("duration": 8)", R"("geostatic": { "settle_time": 2, "settle_step": 1e-12 },)")
+            .find("/geostatic/settle_step") != std::string::npos);
+  CHECK(case_refusal(R"("duration": 8)", R"("consolidation": { "largest_step": 1e-9 },)").find("largest_step") !=
+        std::string::npos);
+  CHECK(
+      case_refusal(R"("duration": 8)", R"("consolidation": { "first_step": 1e-9, "growth": 1 },)").find("first_step") !=
+      std::string::npos);
+  std::ofstream(folder / "tailrun_requests.csv") << "0,0\n0.01,1\n0.02,0\n";
+  CHECK(case_refusal(R"("duration": 8, "motion": "tailrun_requests.csv")") == "");
+  CHECK(case_refusal(R"("duration": 8, "motion": "tailrun_requests.csv", "peak_acceleration": 0)") != "");
+  FemCase options = read_fem_case(case_file(R"("duration": 8, "time_step": 1e-6)"), "");
+  CHECK_NOTHROW(check_shake_output(options, 1e6, folder));
+  options.output.snapshot_interval = 1e-6;
+  CHECK(refusal([&] { check_shake_output(options, 1e8, folder); }).find("8e+06 snapshots") != std::string::npos);
+}
+
+TEST_CASE("rectangles beyond memory") {
+  std::ofstream(folder / "tailrun_requests.json") << R"({ "mesh": { "rectangle": { "width": 4, "height": 4,
+      "columns": 100000, "rows": 100000, "region": "s" } } })";
+  CHECK(refusal([] { read_fem_case(folder / "tailrun_requests.json", ""); }).find("1e+10 elements") !=
+        std::string::npos);
+}
