@@ -1,21 +1,35 @@
 #include "common/application.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <hdf5.h>
 #include <omp.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <new>
 
 #include "common/error.hpp"
+#include "common/output_place.hpp"
 #include "common/provenance.hpp"
 
 namespace tailrun {
 namespace {
 
 bool is_quiet = false;
+
+// A program may be started with its standard streams closed. The next file opened would then get their numbers, and
+// messages would go into results.
+void occupy_standard_streams() {
+  int descriptor = 0;
+  do descriptor = open("/dev/null", O_RDWR);
+  while (descriptor >= 0 && descriptor <= 2);
+  if (descriptor > 2) close(descriptor);
+}
 
 }  // namespace
 
@@ -24,6 +38,10 @@ bool quiet() {
 }
 
 void add_common_options(CLI::App& app) {
+  occupy_standard_streams();
+  // Files are closed where they are used. At exit the library would close once more one that could not be written for
+  // want of space, and crash.
+  H5dont_atexit();
   auto logger = spdlog::stderr_logger_st("tailrun");
   logger->set_pattern("%v");
   spdlog::set_default_logger(logger);
@@ -62,6 +80,9 @@ int run_application(CLI::App& app, int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     spdlog::error("{}: the computation failed: not enough memory", app.get_name());
     return exit_computation_failed;
+  } catch (const std::filesystem::filesystem_error& error) {
+    spdlog::error("{}: {}", app.get_name(), words_for(error));
+    return exit_computation_failed;
   } catch (const std::exception& error) {
     spdlog::error("{}: unexpected error: {}", app.get_name(), error.what());
     return exit_computation_failed;
@@ -74,13 +95,18 @@ void echo_options(const std::string& title, const std::vector<std::string>& line
 }
 
 void write_text_file(const std::string& path, const std::string& text) {
-  const std::string temporary = path + ".part";
+  require_replaceable(path);
   const auto folder = std::filesystem::path(path).parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder);
-  {
-    std::ofstream stream(temporary, std::ios::binary);
-    stream << text;
-    if (!stream.flush()) throw ComputationError(fmt::format("{}: cannot be written", temporary));
+  const std::filesystem::path temporary = temporary_name(path);
+  std::ofstream stream(temporary, std::ios::binary);
+  stream << text;
+  stream.close();  // also writes what is still held back
+  if (!stream) {
+    const std::string reason = std::strerror(errno);
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw ComputationError(fmt::format("{}: cannot be written: {}", path, reason));
   }
   std::filesystem::rename(temporary, path);
 }

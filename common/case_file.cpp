@@ -9,6 +9,8 @@
 #include <sstream>
 
 #include "common/error.hpp"
+#include "common/json_text.hpp"
+#include "common/warnings.hpp"
 
 namespace tailrun {
 
@@ -51,16 +53,15 @@ std::string kind(const Json& value) {
 
 CaseFile::CaseFile(const std::filesystem::path& path) : state_(std::make_shared<State>()) {
   state_->path = path;
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    throw InputError(fmt::format("{}: is a folder, but a case file (JSON) is required", path.string()));
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError(fmt::format("{}: no such case file, or it cannot be read", path.string()));
   std::ostringstream text;
   text << stream.rdbuf();
   state_->text = text.str();
-  try {
-    state_->json = Json::parse(state_->text, nullptr, true, /*ignore_comments=*/true);
-  } catch (const nlohmann::json::parse_error& error) {
-    throw InputError(fmt::format("{}: not valid JSON: {}", path.string(), error.what()));
-  }
+  state_->json = parse_json(path, state_->text);
   if (!state_->json.is_object())
     throw InputError(
         fmt::format("{}: the case file must be a JSON object, found {}", path.string(), kind(state_->json)));
@@ -105,6 +106,17 @@ CaseNode::CaseNode(std::shared_ptr<CaseFile::State> state, const Json* json, std
 void CaseNode::fail(const std::string& key, const std::string& message) const {
   throw InputError(fmt::format("{}: {}: {}", state_->path.string(),
                                key.empty() ? (pointer_.empty() ? "/" : pointer_) : child(pointer_, key), message));
+}
+
+void CaseNode::warn(const std::string& key, const std::string& message) const {
+  add_warning(fmt::format("{}: {}: {}", state_->path.string(), child(pointer_, key), message));
+}
+
+std::optional<double> CaseNode::peek(const std::string& key) const {
+  if (!json_ || !json_->is_object()) return std::nullopt;
+  const auto it = json_->find(key);
+  if (it == json_->end() || !it->is_number()) return std::nullopt;
+  return it->get<double>();
 }
 
 const Json* CaseNode::find(const std::string& key) const {
@@ -161,7 +173,10 @@ std::optional<double> CaseNode::number_if(const std::string& key, std::string_vi
 
 long CaseNode::integer(const std::string& key, long low, long high) const {
   const Json& json = require(key, fmt::format("an integer in [{}, {}]", low, high));
-  if (!json.is_number_integer() || json.get<long>() < low || json.get<long>() > high)
+  // Above the range of long the library would wrap round.
+  const bool beyond = json.is_number_unsigned() &&
+                      json.get<std::uint64_t>() > static_cast<std::uint64_t>(std::numeric_limits<long>::max());
+  if (!json.is_number_integer() || beyond || json.get<long>() < low || json.get<long>() > high)
     fail(key, fmt::format("found {}, but an integer in [{}, {}] is required", kind(json), low, high));
   record(key, std::to_string(json.get<long>()), "", false);
   return json.get<long>();
@@ -266,9 +281,13 @@ std::vector<double> CaseNode::table(const std::string& key, std::string_view uni
 std::filesystem::path CaseNode::file(const std::string& key) const {
   const std::filesystem::path given = text(key);
   const std::filesystem::path path = given.is_absolute() ? given : state_->path.parent_path() / given;
-  if (!std::filesystem::exists(path))
+  std::error_code failed;
+  const auto status = std::filesystem::status(path, failed);
+  if (!std::filesystem::exists(status))
     fail(key, fmt::format("found '{}', but there is no file {} (paths are relative to the case file's folder)",
                           given.string(), path.string()));
+  if (!std::filesystem::is_regular_file(status))
+    fail(key, fmt::format("found '{}', but {} is no file", given.string(), path.string()));
   return path;
 }
 

@@ -98,6 +98,10 @@ class CaseNode {
   bool is_number(const std::string& key) const;  // present and a number (for keys that take a number or a word)
   bool is_list(const std::string& key) const;
   const std::string& pointer() const { return pointer_; }
+  // The number of `key` where there is one, without making the key known: for checks on what has been read.
+  std::optional<double> peek(const std::string& key) const;
+  // A warning (common/warnings.hpp) that names the file, this node's pointer plus `key`, and `message`.
+  void warn(const std::string& key, const std::string& message) const;
   // An InputError that names the file, this node's pointer plus `key` (may be empty) and `message`.
   [[noreturn]] void fail(const std::string& key, const std::string& message) const;
 

@@ -1,10 +1,10 @@
 #include "common/file_format.hpp"
 
 #include <fmt/format.h>
-
-#include <cmath>
+#include <spdlog/spdlog.h>
 
 #include "common/error.hpp"
+#include "common/hdf5_structure.hpp"
 
 namespace tailrun {
 
@@ -22,20 +22,20 @@ void check_format(const Hdf5Reader& file, const std::string& format, int format_
   if (found != format)
     throw InputError(
         fmt::format("{}: is a '{}' file, but a '{}' file is required here", file.path().string(), found, format));
-  const int found_version = static_cast<int>(file.number_attribute("/tailrun", "format_version"));
+  const double found_version = file.number_attribute("/tailrun", "format_version");
   if (found_version != format_version)
     throw InputError(
         fmt::format("{}: format version {}, but this program reads version {}. Make the file again with this version.",
                     file.path().string(), found_version, format_version));
+  if (superblock_version(file.path()) < 2 && file.has_attribute("/tailrun/provenance", "program"))
+    spdlog::warn("{}: has no checksums, as files of earlier versions of '{}' have none: damaged values are not noticed",
+                 file.path().string(), file.text_attribute("/tailrun/provenance", "program"));
 }
 
-void check_values(const Hdf5Reader& file, const std::string& name, const std::vector<double>& values, bool positive) {
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!std::isfinite(values[i]))
-      file.fail(name, fmt::format("entry {} is {}, but every value must be finite", i, values[i]));
-    if (positive && values[i] <= 0.0)
+void check_positive(const Hdf5Reader& file, const std::string& name, const std::vector<double>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (values[i] <= 0.0)
       file.fail(name, fmt::format("entry {} is {:g}, but every value must be positive", i, values[i]));
-  }
 }
 
 }  // namespace tailrun

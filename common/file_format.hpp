@@ -14,9 +14,8 @@ void write_format(Hdf5Writer& file, const std::string& format, int format_versio
 // Throws InputError when the file is of another kind, or of a version that this program does not know.
 void check_format(const Hdf5Reader& file, const std::string& format, int format_version);
 
-// Throws InputError naming the first entry that is not finite, or (with `positive`) not above zero.
-void check_values(const Hdf5Reader& file, const std::string& name, const std::vector<double>& values,
-                  bool positive = false);
+// Throws InputError naming the first entry that is not above zero.
+void check_positive(const Hdf5Reader& file, const std::string& name, const std::vector<double>& values);
 
 // Throws InputError when an index lies outside [low, high).
 template <typename Integer>

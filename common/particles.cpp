@@ -1,5 +1,7 @@
 #include "common/particles.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
@@ -117,17 +119,18 @@ ParticleSet read_particles(const std::filesystem::path& path) {
   const Hdf5Reader file(path);
   check_format(file, format_name, particles_format_version);
   ParticleSet particles;
-  particles.dimension = static_cast<int>(file.number_attribute("/tailrun", "dimension"));
-  if (particles.dimension != 2 && particles.dimension != 3)
-    file.fail("/tailrun", "attribute 'dimension' must be 2 or 3");
+  const double dimension = file.number_attribute("/tailrun", "dimension");
+  if (dimension != 2.0 && dimension != 3.0)
+    file.fail("/tailrun", fmt::format("attribute 'dimension' is {:g}, but 2 or 3 is required", dimension));
+  particles.dimension = static_cast<int>(dimension);
   particles.time = file.number_attribute("/tailrun", "time_s");
   particles.transfer_time = file.number_attribute("/tailrun", "transfer_time_s");
   particles.particle_size = file.number_attribute("/tailrun", "particle_size_m");
   particles.material_names = file.texts("/tailrun/material_names");
   particles.region_names = file.texts("/tailrun/region_names");
   particles.position = file.doubles("/VTKHDF/Points", 0, 3);
-  check_values(file, "/VTKHDF/Points", particles.position);
   const std::size_t n = particles.position.size() / 3;
+  if (n == 0) file.fail("/VTKHDF/Points", "has no rows, but at least one particle is required");
 
   std::vector<std::string> known = {"material_id", "region_id", "source_element"};
   for (const auto& field : fields()) {
@@ -135,7 +138,7 @@ ParticleSet read_particles(const std::filesystem::path& path) {
     const std::string name = data + field.name;
     if (field.optional && !file.has(name)) continue;
     particles.*field.values = file.doubles(name, n, std::max<std::size_t>(file_columns(field, particles), 1));
-    check_values(file, name, particles.*field.values, field.positive);
+    if (field.positive) check_positive(file, name, particles.*field.values);
   }
   const auto materials = file.integers(data + "material_id", n, 1);
   check_indices(file, data + "material_id", materials, 0, static_cast<std::int64_t>(particles.material_names.size()));
@@ -151,10 +154,15 @@ ParticleSet read_particles(const std::filesystem::path& path) {
     particles.extra[name] = file.doubles(data + name, n, 1);
     if (file.has_attribute(data + name, "unit")) particles.extra_unit[name] = file.text_attribute(data + name, "unit");
   }
-  for (const auto& name : file.members("/tailrun/terrain"))
-    particles.terrain.push_back({name, file.doubles("/tailrun/terrain/" + name, 0, 2)});
-  for (const auto& name : file.members("/tailrun/notes"))
-    particles.notes[name] = file.texts("/tailrun/notes/" + name).at(0);
+  for (const auto& name : file.members_if("/tailrun/terrain")) {
+    TerrainLine line{name, file.doubles("/tailrun/terrain/" + name, 0, 2)};
+    if (line.points.size() < 4) file.fail("/tailrun/terrain/" + name, "is a line of fewer than 2 points");
+    particles.terrain.push_back(std::move(line));
+  }
+  for (const auto& name : file.members_if("/tailrun/notes")) {
+    const auto texts = file.texts("/tailrun/notes/" + name);
+    if (!texts.empty()) particles.notes[name] = texts.front();
+  }
   return particles;
 }
 

@@ -122,10 +122,11 @@ Snapshot read_snapshot(const std::filesystem::path& path) {
     snapshot.phreatic_line = file.doubles("/tailrun/phreatic_line", 0, 2);
 
   const auto position = file.doubles("/VTKHDF/Points", 0, 3);
-  check_values(file, "/VTKHDF/Points", position);
   snapshot.position = without_third(position);
   const std::size_t nodes = snapshot.nodes();
   const std::size_t elements = file.shape(cells + "region_id")[0];
+  if (nodes == 0) file.fail("/VTKHDF/Points", "has no rows, but at least one node is required");
+  if (elements == 0) file.fail(cells + "region_id", "has no rows, but at least one element is required");
   snapshot.quads = file.integers("/VTKHDF/Connectivity", 4 * elements, 1);
   check_indices(file, "/VTKHDF/Connectivity", snapshot.quads, 0, static_cast<std::int64_t>(nodes));
   const auto regions = file.integers(cells + "region_id", elements, 1);
@@ -135,10 +136,10 @@ Snapshot read_snapshot(const std::filesystem::path& path) {
   for (const auto& field : fields()) {
     const std::string name = (field.of_nodes ? points : cells) + field.name;
     auto values = file.doubles(name, field.of_nodes ? nodes : elements, field.columns ? field.columns : 1);
-    check_values(file, name, values, field.name == "density" || field.name == "thickness");
+    if (field.name == "density" || field.name == "thickness") check_positive(file, name, values);
     snapshot.*field.values = field.columns == 3 ? without_third(values) : std::move(values);
   }
-  for (const auto& name : file.members("/tailrun/lines")) {
+  for (const auto& name : file.members_if("/tailrun/lines")) {
     MeshLine line{name, file.integers("/tailrun/lines/" + name, 0, 2)};
     check_indices(file, "/tailrun/lines/" + name, line.edges, 0, static_cast<std::int64_t>(nodes));
     snapshot.lines.push_back(std::move(line));

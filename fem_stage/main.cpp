@@ -22,6 +22,8 @@
 
 #include "common/application.hpp"
 #include "common/error.hpp"
+#include "common/output_place.hpp"
+#include "common/plausible_state.hpp"
 #include "fem_stage/element_test/calibration.hpp"
 #include "fem_stage/element_test/element_test.hpp"
 #include "fem_stage/mesh/gmsh_mesh.hpp"
@@ -63,8 +65,9 @@ Model model_of(const Arguments& arguments, const FemCase& options) {
 // Geometry -> mesh.msh, or a copy of the case's own mesh file, with a report on its quality.
 void make_mesh(const Arguments& arguments) {
   const FemCase options = read_fem_case(arguments.case_file, arguments.size);
+  check_output_folder(arguments.folder);
   const fs::path output = fs::path(arguments.folder) / "mesh.msh";
-  fs::create_directories(arguments.folder);
+  require_replaceable(output);
   Mesh mesh;
   if (!options.mesh.geometry.empty()) {
     mesh = mesh_geometry(options.mesh.geometry,
@@ -87,12 +90,15 @@ void make_mesh(const Arguments& arguments) {
 // Mesh -> geostatic.h5: the dam at rest before the earthquake.
 void make_geostatic(const Arguments& arguments) {
   FemCase options = read_fem_case(arguments.case_file, arguments.size);
+  check_output_folder(arguments.folder);
+  require_replaceable(fs::path(arguments.folder) / "geostatic.h5");
   echo_options(arguments.case_file, options.echo);
   options.provenance.add_file(mesh_path(arguments));
   const Model model = model_of(arguments, options);
   MaterialPoints points = make_material_points(model);
   State state;
   const GeostaticReport report = run_geostatic(model, points, state);
+  check_state(columns_of(make_snapshot(model, state, 0.0, 0.0, 0.0), arguments.case_file, {}, false));
   write_state(geostatic_path(arguments), model, state, points, 0.0, 0.0, 0.0);
   write_text_file((fs::path(arguments.folder) / "geostatic.json").string(), geostatic_summary(report).dump(2) + "\n");
   spdlog::info(
@@ -118,6 +124,7 @@ void check_restart(const Arguments& arguments, const FemCase& options, const Sta
 // geostatic.h5 (or any state file) and the motion -> snapshots, histories, summary.json.
 void make_shake(const Arguments& arguments, bool echo) {
   FemCase options = read_fem_case(arguments.case_file, arguments.size);
+  check_output_folder(arguments.folder);
   const Motion motion = case_motion(options);
   if (echo) echo_options(arguments.case_file, options.echo);
   options.provenance.add_file(mesh_path(arguments));
@@ -147,6 +154,7 @@ void make_shake(const Arguments& arguments, bool echo) {
 // A state after the shaking -> its pore pressures at rest again.
 void make_consolidation(const Arguments& arguments) {
   FemCase options = read_fem_case(arguments.case_file, arguments.size);
+  check_output_folder(arguments.folder);
   echo_options(arguments.case_file, options.echo);
   options.provenance.add_file(mesh_path(arguments));
   options.provenance.add_file(arguments.from);
@@ -217,13 +225,20 @@ int main(int argc, char** argv) {
   element->add_option("-o,--output", element_test.output,
                       "CSV of the response (SI; stresses and volumetric strain compression positive)");
   element->add_option("--summary", element_test.summary, "JSON summary (also printed)");
-  element->callback([&] { run_element_test(element_test); });
+  element->callback([&] {
+    for (const auto& path : {element_test.output, element_test.summary})
+      if (!path.empty()) check_output_file(path);
+    run_element_test(element_test);
+  });
 
   CalibrationOptions calibration;
   CLI::App* calibrate = app.add_subcommand("calibrate", "PM4Sand parameters from target strengths");
   calibrate->add_option("case", calibration.case_file, "target.json")->required();
   calibrate->add_option("-o,--output", calibration.output_folder, "Folder of curves, picture and parameters")
       ->default_val("calibration");
-  calibrate->callback([&] { run_calibration(calibration); });
+  calibrate->callback([&] {
+    check_output_folder(calibration.output_folder);
+    run_calibration(calibration);
+  });
   return run_application(app, argc, argv);
 }

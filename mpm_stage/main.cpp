@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "common/application.hpp"
+#include "common/output_place.hpp"
 #include "mpm_stage/run/interrupt.hpp"
 #include "mpm_stage/run/runout.hpp"
 #include "mpm_stage/scene/scene.hpp"
@@ -40,6 +41,7 @@ int main(int argc, char** argv) {
     const CaseFile file(case_path);
     const Scene scene = read_scene(file, particles, size);
     file.finish();
+    check_output_folder(output);
     echo_options(case_path.string(), file.echo());
     Provenance provenance;
     provenance.program = "mpm_stage";

@@ -18,6 +18,9 @@
 
 #include "common/application.hpp"
 #include "common/error.hpp"
+#include "common/output_place.hpp"
+#include "common/plausible_state.hpp"
+#include "common/warnings.hpp"
 #include "transfer_tool/audit/audit.hpp"
 #include "transfer_tool/audit/particle_set.hpp"
 #include "transfer_tool/import/import_tables.hpp"
@@ -46,20 +49,23 @@ Snapshot read_state(const RunOptions& options, Provenance& provenance) {
 void warn_about(const Snapshot& snapshot, const TransferCase& wanted, const std::vector<bool>& kept,
                 const SamplePoints& points) {
   if (wanted.transfer_time && std::abs(*wanted.transfer_time - snapshot.time) > 1e-3)
-    spdlog::warn("the case wants the state at {:g} s, the snapshot is of {:g} s", *wanted.transfer_time, snapshot.time);
+    add_warning(fmt::format("the case wants the state at {:g} s, the snapshot is of {:g} s", *wanted.transfer_time,
+                            snapshot.time));
   if (points.capped_elements > 0)
-    spdlog::warn(
+    add_warning(fmt::format(
         "{} elements want more than 5 Gauss points along a side for cells of {:g} m: take \"layout\": \"uniform\"",
-        points.capped_elements, wanted.sampling.cell_size);
+        points.capped_elements, wanted.sampling.cell_size));
   for (std::size_t e = 0; e < snapshot.elements(); ++e)
     if (kept[e] && snapshot.thickness[e] != 1.0) {
-      spdlog::warn("region '{}' has a thickness of {:g} m; its particles are per metre of thickness all the same",
-                   snapshot.region_names[static_cast<std::size_t>(snapshot.region_id[e])], snapshot.thickness[e]);
+      add_warning(
+          fmt::format("region '{}' has a thickness of {:g} m; its particles are per metre of thickness all the same",
+                      snapshot.region_names[static_cast<std::size_t>(snapshot.region_id[e])], snapshot.thickness[e]));
       break;
     }
 }
 
 void run(const RunOptions& options) {
+  check_output_file(options.output_path);
   Provenance provenance{"transfer_tool", {}, {}};
   const CaseFile file(options.case_path);
   provenance.add_text(file.path(), file.text());
@@ -71,13 +77,14 @@ void run(const RunOptions& options) {
   const std::vector<bool> kept = kept_elements(snapshot, wanted.sampling);
   const SamplePoints points = sample(snapshot, kept, wanted.sampling);
   warn_about(snapshot, wanted, kept, points);
+  check_state(columns_of(snapshot, options.snapshot_path, kept, true));
 
   // 2. Map
   const PointState state = map_state(snapshot, points, wanted.state);
 
   // 3. Assign
   const Assignment assignment = assign(snapshot, points, state, wanted.rules);
-  for (const auto& warning : assignment.warnings) spdlog::warn("{}", warning);
+  for (const auto& warning : assignment.warnings) add_warning(warning);
   ParticleSet particles = particle_set(snapshot, points, state, assignment);
   if (wanted.terrain.any()) particles.terrain = terrain_lines(snapshot, kept, wanted.terrain);
   if (wanted.terrain.walls)
@@ -93,14 +100,17 @@ void run(const RunOptions& options) {
   // 5. Write
   particles.notes["audit"] = audit_json(result).dump(1);
   particles.notes["assignment"] = assignment.record.dump(1);
+  if (!warnings().empty()) particles.notes["warnings"] = nlohmann::ordered_json(warnings()).dump(1);
   write_particles(options.output_path, particles, provenance);
   spdlog::info("wrote {}", options.output_path);
 }
 
 void import(const std::string& case_path, const std::string& output_path) {
+  check_output_file(output_path);
   Provenance provenance{"transfer_tool", {}, {}};
   const CaseFile file(case_path);
   const Snapshot snapshot = import_tables(file, provenance);
+  check_state(columns_of(snapshot, case_path, {}, true));
   echo_options("transfer_tool import " + case_path, file.echo());
   write_snapshot(output_path, snapshot, provenance);
   fmt::print("{} nodes, {} elements, {} regions at t = {:g} s: {}\n", snapshot.nodes(), snapshot.elements(),

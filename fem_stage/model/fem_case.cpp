@@ -7,6 +7,7 @@
 
 #include "common/case_file.hpp"
 #include "common/error.hpp"
+#include "common/plausible_material.hpp"
 
 namespace tailrun::fem {
 namespace {
@@ -201,6 +202,7 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
   const CaseNode fluid = root.object_or_empty("fluid");
   out.fluid_density = fluid.number_or("density", "kg/m3", Range::positive(), out.fluid_density);
   out.fluid_bulk_modulus = fluid.number_or("bulk_modulus", "Pa", Range::positive(), out.fluid_bulk_modulus);
+  check_water_stiffness(fluid, "bulk_modulus", out.fluid_bulk_modulus, out.gravity);
   if (root.has("phreatic_line")) {
     out.phreatic_line = root.table("phreatic_line", "m", 2);
     for (std::size_t i = 2; i + 1 < out.phreatic_line.size(); i += 2)
@@ -229,6 +231,12 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
   for (const auto& [name, node] : root.object("materials").members()) {
     material_names.push_back(name);
     out.materials.push_back(read_material(node, name));
+    MaterialSetting setting;
+    setting.gravity = out.gravity;
+    setting.height = 30.0;  // of a dam; the mesh is not known here
+    setting.water_density = out.fluid_density;
+    setting.has_water = !out.phreatic_line.empty();
+    check_material(node, setting);
   }
   for (const auto& [name, node] : root.object("regions").members()) {
     RegionOptions region;

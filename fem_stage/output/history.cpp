@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 
 #include "common/error.hpp"
+#include "common/output_place.hpp"
 #include "fem_stage/output/state_file.hpp"
 
 namespace tailrun::fem {
@@ -26,21 +29,28 @@ std::vector<std::string> history_columns(const FemCase& options) {
 }  // namespace
 
 CsvFile::CsvFile(const std::filesystem::path& path, const std::vector<std::string>& columns)
-    : path_(path), stream_(path.string() + ".part") {
-  if (!stream_) throw ComputationError(fmt::format("{}: cannot be written", path.string()));
+    : path_(path), temporary_(temporary_name(path)) {
+  require_replaceable(path);
+  stream_.open(temporary_);
   for (std::size_t i = 0; i < columns.size(); ++i) stream_ << (i ? "," : "") << columns[i];
   stream_ << '\n';
+  check();
 }
 
 void CsvFile::row(const std::vector<double>& values) {
   for (std::size_t i = 0; i < values.size(); ++i) stream_ << (i ? "," : "") << fmt::format("{:.8g}", values[i]);
   stream_ << '\n';
+  check();
 }
 
 void CsvFile::finish() {
-  if (!stream_.flush()) throw ComputationError(fmt::format("{}: cannot be written", path_.string()));
-  stream_.close();
-  std::filesystem::rename(path_.string() + ".part", path_);
+  stream_.close();  // also writes what is still held back
+  check();
+  std::filesystem::rename(temporary_, path_);
+}
+
+void CsvFile::check() const {
+  if (!stream_) throw ComputationError(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
 }
 
 History::History(const Model& model, const std::filesystem::path& folder)

@@ -18,6 +18,8 @@ struct BaseMotion {
   double acceleration = 0.0, velocity = 0.0, displacement = 0.0;
 };
 
+// A table of results, row by row, under a temporary name until finish(). All throw ComputationError when it cannot be
+// written.
 class CsvFile {
  public:
   CsvFile(const std::filesystem::path& path, const std::vector<std::string>& columns);
@@ -25,7 +27,8 @@ class CsvFile {
   void finish();
 
  private:
-  std::filesystem::path path_;
+  void check() const;
+  std::filesystem::path path_, temporary_;
   std::ofstream stream_;
 };
 

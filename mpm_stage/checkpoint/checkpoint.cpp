@@ -4,15 +4,18 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <string_view>
 
 #include "common/error.hpp"
 #include "common/file_format.hpp"
+#include "mpm_stage/checkpoint/checkpoint_checks.hpp"
 
 namespace tailrun::mpm {
 
 namespace {
 
 const char* const format_name = "mpm_checkpoint";
+constexpr std::int64_t block_range = std::int64_t{1} << 20;  // of the grid's keys
 
 // Calls action(name, unit, column) for all columns that the next step reads; it writes the gradients before it does.
 template <class P, class Action>
@@ -126,11 +129,11 @@ void write_rows(Hdf5Writer& file, const std::string& name, std::vector<Row> rows
 }
 
 template <class Row>
-std::vector<Row> read_rows(const Hdf5Reader& file, const std::string& name, const Row& like) {
+std::vector<Row> read_rows(const Hdf5Reader& file, const std::string& name, const Row& like, bool gaps) {
   std::size_t width = 0;
   Row row = like;
   for_each_value(row, [&](double) { ++width; });
-  const std::vector<double> values = file.doubles(name, 0, width);
+  const std::vector<double> values = gaps ? file.doubles_or_gaps(name, 0, width) : file.doubles(name, 0, width);
   std::vector<Row> rows(values.size() / width, like);
   std::size_t k = 0;
   for (Row& r : rows) for_each_value(r, [&](double& x) { x = values[k++]; });
@@ -192,9 +195,11 @@ void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, do
   if (!state.grip.blocks.empty()) {
     std::vector<std::int64_t> gripping;
     for (const auto& index : state.grip.blocks) gripping.insert(gripping.end(), index.begin(), index.end());
-    file.write("/grid/grip_blocks", std::span<const std::int64_t>(gripping), Dim, "1", "blocks in which material touches the ground or another field's");
+    file.write("/grid/grip_blocks", std::span<const std::int64_t>(gripping), Dim, "1",
+               "blocks in which material touches the ground or another field's");
     const std::vector<std::int64_t> fields(state.grip.fields.begin(), state.grip.fields.end());
-    file.write("/grid/grip_fields", std::span<const std::int64_t>(fields), 0, "1", "velocity field of each, or 4 and more: pair of fields");
+    file.write("/grid/grip_fields", std::span<const std::int64_t>(fields), 0, "1",
+               "velocity field of each, or 4 and more: pair of fields");
     file.write("/grid/grip", state.grip.smoothed, Block<Dim>::nodes, "m/s2",
                "smoothed friction per mass of their nodes");
   }
@@ -222,8 +227,9 @@ void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, do
 }
 
 template <int Dim>
-RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, double cell_size,
+RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, const Scene& scene,
                          const Provenance& provenance) {
+  const double cell_size = scene.cell_size;
   const Hdf5Reader file(path);
   check_format(file, format_name, checkpoint_format_version);
   check_inputs(file, provenance);
@@ -235,69 +241,77 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
                                       file.number_attribute("/numbers", "cell_size"), Dim, cell_size));
   SolverState<Dim> state;
   RunState run;
-  for_each_number(state, run,
-                  [&](const char* name, double& value) { value = file.number_attribute("/numbers", name); });
+  for_each_number(state, run, [&](const char* name, double& value) {
+    // With FMPM what transfers and impacts cost is not known.
+    const std::string_view word = name;
+    value = word == "work_transfer" || word == "work_impact" ? file.number_attribute_or_gap("/numbers", name)
+                                                             : file.number_attribute("/numbers", name);
+  });
+  for (const char* name : {"sorts", "steps", "series_count", "frame_count"}) whole_attribute(file, "/numbers", name);
 
   // The solver's own particles say which columns there are and how many materials.
   Particles<Dim>& like = solver.particles();
-  const auto materials = file.integers("/particles/material");
-  const auto identities = file.integers("/particles/identity", materials.size());
+  const auto materials = file.integers("/particles/material", 0, 1);
   const std::size_t n = materials.size();
+  if (n == 0 || n > like.count())
+    file.fail("/particles/material", fmt::format("has {} rows, but the input has {} particles", n, like.count()));
+  const auto identities = file.integers("/particles/identity", n, 1);
   check_indices(file, "/particles/identity", identities, 0, static_cast<std::int64_t>(like.count()));
+  check_indices(file, "/particles/material", materials, 0, static_cast<std::int64_t>(scene.materials.size()));
   Particles<Dim> P;
   P.resize(n, !like.affine[0].empty(), !like.pore_pressure.empty(), !like.rest_volume.empty());
   for_each_kept_column(P, [&](const std::string& name, const char*, auto& column) {
     if (column.empty()) return;
-    const auto values = file.doubles("/particles/" + name, n);
+    const auto values = file.doubles("/particles/" + name, n, 1);
     std::copy(values.begin(), values.end(), column.begin());
   });
   std::copy(materials.begin(), materials.end(), P.material.begin());
   std::copy(identities.begin(), identities.end(), P.identity.begin());
   if (!like.side.empty()) {
-    const auto sides = file.integers("/particles/side", n);
+    const auto sides = file.integers("/particles/side", n, 1);
     check_indices(file, "/particles/side", sides, 0, 2);
     P.side.assign(sides.begin(), sides.end());
   }
 
   const auto blocks = file.integers("/grid/blocks", 0, Dim);
-  const auto first = file.integers("/grid/first", blocks.size() / Dim + 1);
+  const auto first = file.integers("/grid/first", blocks.size() / Dim + 1, 1);
   if (first.front() != 0 || first.back() != static_cast<std::int64_t>(n) || !std::is_sorted(first.begin(), first.end()))
     file.fail("/grid/first", fmt::format("must rise from 0 to the number of particles, {}", n));
   state.blocks.resize(blocks.size() / Dim);
+  check_indices(file, "/grid/blocks", blocks, -block_range, block_range);
   for (std::size_t k = 0; k < blocks.size(); ++k) state.blocks[k / Dim][k % Dim] = static_cast<int>(blocks[k]);
   state.first.assign(first.begin(), first.end());
-  const auto gripping = static_cast<std::size_t>(file.number_attribute("/numbers", "grip_blocks"));
+  const auto gripping = static_cast<std::size_t>(whole_attribute(file, "/numbers", "grip_blocks"));
   if (gripping > 0) {
     const auto index = file.integers("/grid/grip_blocks", gripping, Dim);
+    check_indices(file, "/grid/grip_blocks", index, -block_range, block_range);
     state.grip.blocks.resize(gripping);
     for (std::size_t k = 0; k < index.size(); ++k) state.grip.blocks[k / Dim][k % Dim] = static_cast<int>(index[k]);
-    const auto fields = file.integers("/grid/grip_fields", gripping);
+    const auto fields = file.integers("/grid/grip_fields", gripping, 1);
     check_indices(file, "/grid/grip_fields", fields, 0, most_fields + pairs_of(most_fields));
     state.grip.fields.assign(fields.begin(), fields.end());
     state.grip.smoothed = file.doubles("/grid/grip", gripping, Block<Dim>::nodes);
   }
-  state.wave_speed = file.doubles("/grid/wave_speed");
-  const auto meeting = file.integers("/grid/meeting");
+  state.wave_speed = file.doubles("/grid/wave_speed", 0, 1);
+  const auto meeting = file.integers("/grid/meeting", 0, 1);
   check_indices(file, "/grid/meeting", meeting, 0, 2);
   state.meeting.assign(meeting.begin(), meeting.end());
-  state.sleep_clocks = file.doubles("/grid/sleep_clocks");
-  if (!state.sleep_clocks.empty() && state.sleep_clocks.size() != state.blocks.size())
-    file.fail("/grid/sleep_clocks",
-              fmt::format("has {} values for {} blocks", state.sleep_clocks.size(), state.blocks.size()));
-  check_indices(file, "/particles/material", materials, 0, static_cast<std::int64_t>(state.wave_speed.size()));
-  const auto removed = file.integers("/particles/removed"), held = file.integers("/particles/held");
+  state.sleep_clocks = file.doubles("/grid/sleep_clocks", 0, 1);
+  const auto removed = file.integers("/particles/removed", 0, 1), held = file.integers("/particles/held", 0, 1);
+  check_indices(file, "/particles/removed", removed, 0, static_cast<std::int64_t>(like.count()));
   state.removed.assign(removed.begin(), removed.end());
   check_indices(file, "/particles/held", held, 0, static_cast<std::int64_t>(like.count()));
   state.held.assign(held.begin(), held.end());
 
-  run.ledger = read_rows(file, "/series/ledger", LedgerRow{});
+  run.ledger = read_rows(file, "/series/ledger", LedgerRow{}, true);
   const auto shape = file.shape("/series/front");
   FrontRow row;
   std::size_t plain = 0;
   for_each_value(row, [&](double) { ++plain; });
-  if (shape.size() != 2 || shape[1] < plain) file.fail("/series/front", "has too few columns");
+  if (shape.size() != 2 || shape[1] < plain || (shape[1] - plain) % 2 != 0)
+    file.fail("/series/front", "has too few columns");
   row.points.resize(shape[1] - plain);
-  run.front = read_rows(file, "/series/front", row);
+  run.front = read_rows(file, "/series/front", row, true);
   state.bodies = solver.bodies();
   if (!state.bodies.empty()) {
     const auto bodies = file.doubles("/series/body_state", state.bodies.size(), 2 * Dim);
@@ -308,17 +322,24 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
       }
     BodyRow body_row;
     body_row.values.resize(2 * Dim * state.bodies.size());
-    run.bodies = read_rows(file, "/series/bodies", body_row);
+    run.bodies = read_rows(file, "/series/bodies", body_row, false);
   }
   run.frame_names = file.texts("/series/frame_names");
-  run.frame_times = file.doubles("/series/frame_times", run.frame_names.size());
+  run.frame_times = file.doubles("/series/frame_times", 0, 1);
+  if (run.frame_times.size() != run.frame_names.size())
+    file.fail("/series/frame_times", fmt::format("has {} rows, but there are {} names of frames",
+                                                 run.frame_times.size(), run.frame_names.size()));
+  check_particles<Dim>(file, P, like, state.removed);
+  check_blocks<Dim>(file, state, P, scene, solver.grid().origin());
+  check_state<Dim>(file, state, scene);
+  check_series(file, run, scene);
   solver.resume(std::move(P), state);
   return run;
 }
 
 template void write_checkpoint<2>(const std::filesystem::path&, Solver<2>&, double, RunState, const Provenance&);
 template void write_checkpoint<3>(const std::filesystem::path&, Solver<3>&, double, RunState, const Provenance&);
-template RunState read_checkpoint<2>(const std::filesystem::path&, Solver<2>&, double, const Provenance&);
-template RunState read_checkpoint<3>(const std::filesystem::path&, Solver<3>&, double, const Provenance&);
+template RunState read_checkpoint<2>(const std::filesystem::path&, Solver<2>&, const Scene&, const Provenance&);
+template RunState read_checkpoint<3>(const std::filesystem::path&, Solver<3>&, const Scene&, const Provenance&);
 
 }  // namespace tailrun::mpm

@@ -36,9 +36,10 @@ void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, do
 
 // Brings `solver`, newly made from the same scene and not started, to where the checkpoint was written, and returns the
 // run's own state. Throws InputError when there is no such file, it is damaged, or it belongs to other input: another
-// case file, particles file or motion (by SHA-256), another cell size or dimension.
+// case file, particles file or motion (by SHA-256), another cell size or dimension; or when what it says cannot be a
+// state of this scene (checkpoint_checks.hpp).
 template <int Dim>
-RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, double cell_size,
+RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, const Scene& scene,
                          const Provenance& provenance);
 
 }  // namespace tailrun::mpm

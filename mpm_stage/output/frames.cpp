@@ -8,6 +8,7 @@
 
 #include "common/application.hpp"
 #include "common/error.hpp"
+#include "common/output_place.hpp"
 
 namespace tailrun::mpm {
 
@@ -89,7 +90,11 @@ FrameWriter::~FrameWriter() {
 
 void FrameWriter::wait() {
   if (thread_.joinable()) thread_.join();
-  if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
+  if (!error_) return;
+  // What could not be written is not there.
+  names_.pop_back();
+  times_.pop_back();
+  std::rethrow_exception(std::exchange(error_, nullptr));
 }
 
 void FrameWriter::restore(std::vector<std::string> names, std::vector<double> times) {
@@ -106,8 +111,7 @@ void FrameWriter::write(ParticleSet set) {
       write_particles(path, set, provenance_);
       write_index();
     } catch (const std::filesystem::filesystem_error& error) {
-      error_ =
-          std::make_exception_ptr(ComputationError(fmt::format("cannot write {}: {}", path.string(), error.what())));
+      error_ = std::make_exception_ptr(ComputationError("cannot write " + words_for(error)));
     } catch (...) {
       error_ = std::current_exception();
     }

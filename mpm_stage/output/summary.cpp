@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "common/provenance.hpp"
+#include "common/warnings.hpp"
 #include "mpm_stage/boundary/soil_limit.hpp"
 
 namespace tailrun::mpm {
@@ -164,6 +165,7 @@ Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& reco
   j["peak_memory_MB"] = static_cast<double>(usage.ru_maxrss) / 1024.0;
   j["features"] = features(scene);
   j["remarks"] = scene.remarks;
+  j["warnings"] = warnings();
   j["frames"] = record.frames;
   return j;
 }

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "common/application.hpp"
 #include "common/error.hpp"
 #include "common/progress.hpp"
+#include "common/warnings.hpp"
 #include "mpm_stage/checkpoint/checkpoint.hpp"
 #include "mpm_stage/output/body_series.hpp"
 #include "mpm_stage/output/energy_watch.hpp"
@@ -135,6 +137,7 @@ class Runout {
     frame_.advance();
     solver_->start(until_next_event(0.0));
     record_.first_unbalanced = solver_->unbalanced_force_ratio(gravity_);
+    warn_if_unbalanced();
     ledger_.sample(0.0, *solver_, scene_.energy_growth_limit);
     front_.sample(0.0, solver_->particles());
     bodies_.sample(0.0, solver_->bodies());
@@ -146,13 +149,32 @@ class Runout {
         record_.first_unbalanced);
   }
 
+  // A state at rest that was handed over has borne its own weight so far. One that moves has not, and its stresses come
+  // from elements that liquefy one by one: the main case begins at 1 to 2. Scenes made here may begin without any
+  // stress.
+  void warn_if_unbalanced() const {
+    constexpr double rest = 1e-3, most_at_rest = 0.5, most_moving = 5.0;  // m/s; 1
+    if (scene_.inputs.empty()) return;
+    const auto& velocity = scene_.particles.velocity;
+    const bool at_rest = std::all_of(velocity.begin(), velocity.end(), [](double v) { return std::fabs(v) < rest; });
+    const double most = at_rest ? most_at_rest : most_moving;
+    if (!(record_.first_unbalanced > most)) return;
+    add_warning(
+        fmt::format("forces are out of balance by {:.2g} of the weight at the start, though a state {} has less than "
+                    "{:g}: do stresses, "
+                    "pore pressures and water outside belong together, are faces free that carry stress, and does the "
+                    "ground lie where "
+                    "the soil ends?",
+                    record_.first_unbalanced, at_rest ? "at rest" : "in motion", most));
+  }
+
   void resume() {
     if (!std::filesystem::exists(checkpoint_))
       throw InputError(
           fmt::format("{}: no such file, so there is nothing to go on from: the run has not begun, has "
                       "reached its end, or time/checkpoint_interval is 0. Run it without --resume",
                       checkpoint_.string()));
-    RunState state = read_checkpoint<Dim>(checkpoint_, *solver_, scene_.cell_size, provenance_);
+    RunState state = read_checkpoint<Dim>(checkpoint_, *solver_, scene_, provenance_);
     record_ = state.record;
     series_ = Schedule(scene_.output.series_interval, state.series_count);
     frame_ = Schedule(scene_.output.frame_interval, state.frame_count);

@@ -5,6 +5,9 @@
 #include <cmath>
 
 #include "common/error.hpp"
+#include "common/plausible_material.hpp"
+#include "common/plausible_state.hpp"
+#include "common/warnings.hpp"
 #include "mpm_stage/scene/scene.hpp"
 
 namespace tailrun::mpm {
@@ -237,6 +240,29 @@ double default_surface_share(const Scene& scene) {
 
 }  // namespace
 
+// What soil and state cannot be (common/plausible_*). Particles that were handed over come with the warnings of that.
+void judge(const CaseNode& root, const Scene& scene) {
+  const ParticleSet& set = scene.particles;
+  MaterialSetting setting;
+  setting.gravity = std::hypot(scene.gravity[0], scene.gravity[1], scene.gravity[2]);
+  double low = set.position[1], high = low, wettest = 0.0;
+  for (std::size_t p = 0; p < set.count(); ++p) {
+    low = std::min(low, set.position[3 * p + 1]);
+    high = std::max(high, set.position[3 * p + 1]);
+    wettest = std::max(wettest, set.pore_pressure[p]);
+  }
+  setting.height = std::max(high - low, scene.cell_size);
+  setting.has_water = wettest > 0.0;
+  for (const auto& [name, node] : root.object("materials").members()) check_material(node, setting);
+  if (scene.inputs.empty()) return;
+  const bool straight_down = scene.gravity[0] == 0.0 && scene.gravity[2] == 0.0;
+  check_state(columns_of(set, scene.inputs.front().string(), straight_down ? -scene.gravity[1] : 0.0));
+  if (const auto note = set.notes.find("warnings"); note != set.notes.end())
+    if (const auto list = nlohmann::json::parse(note->second, nullptr, false); list.is_array())
+      for (const auto& text : list)
+        if (text.is_string()) add_warning("from the hand-over: " + text.get<std::string>());
+}
+
 Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_override, const std::string& size) {
   const CaseNode root = file.root();
   Scene scene;
@@ -256,6 +282,7 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
   read_time(root, scene);
 
   const double factor = root.object_or_empty("residual_strength").number_or("factor", "1", Range::positive(), 1.0);
+  check_factor(root.object_or_empty("residual_strength"), "factor", factor);
   std::vector<Material> materials;
   for (const auto& [name, node] : root.object("materials").members())
     materials.push_back(read_material(name, node, factor));
@@ -281,6 +308,7 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
   read_contact(root, scene);
   if (scene.solver.surface_share < 0.0) scene.solver.surface_share = default_surface_share(scene);
   scene.cohesion = assign_cohesion(file, scene.materials, scene.particles);
+  judge(root, scene);
   read_base_motion(root, scene);
   read_output(root, scene);
   return scene;

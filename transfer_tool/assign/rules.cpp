@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "common/error.hpp"
@@ -57,6 +58,10 @@ Range read_range(const CaseNode& node, const std::string& key, const char* unit)
   range.low_open = above.has_value();
   range.high_open = below.has_value();
   if (range.low > range.high) node.fail(key, fmt::format("the interval {} is empty", range.text()));
+  // r_u seldom passes 1.2: a bound above 2 is a percentage, and no point would ever be beyond it.
+  if (key == "excess_pore_pressure_ratio" && std::isfinite(range.low) && range.low > 2.0)
+    bounds.warn(above ? "above" : "at_least",
+                fmt::format("{:g}; r_u is a ratio, {:g} % are {:g}", range.low, range.low, 0.01 * range.low));
   return range;
 }
 
@@ -214,6 +219,11 @@ Assignment assign(const Snapshot& snapshot, const SamplePoints& points, const Po
     if (!rules[r].strength) continue;
     for (const auto& warning : rules[r].strength->warnings)
       result.warnings.push_back(fmt::format("rule {} ({}): {}", r, rules[r].strength->model, warning));
+    if (2 * tally.raised > tally.count)
+      result.warnings.push_back(fmt::format(
+          "rule {} ({}): {} of {} points have so little strength that it was raised to the lower bound; are "
+          "strengths and stresses in Pa?",
+          r, rules[r].strength->model, tally.raised, tally.count));
     if (tally.outside > 0)
       result.warnings.push_back(fmt::format(
           "rule {} ({}): {} of {} points have sigma'_v0 outside of {:g} to {:g} kPa", r, rules[r].strength->model,

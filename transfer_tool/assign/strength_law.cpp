@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/plausible_material.hpp"
 #include "transfer_tool/assign/residual_strength.hpp"
 
 namespace tailrun::transfer {
@@ -37,6 +38,14 @@ class Inputs {
   std::vector<double> numbers(const std::string& key, Range range) {
     auto values = node_.numbers(key, "Pa", range);
     law_.record[key] = values;
+    // Stresses in kPa: the largest of a list tells, for the smallest may be 0.
+    if (!values.empty() && *std::max_element(values.begin(), values.end()) < 1e3 && key != "strength" &&
+        key != "strengths")
+      node_.warn(key, fmt::format("the largest is {:g} Pa, the stress under less than a tenth of a metre of soil; are "
+                                  "they in kPa?",
+                                  *std::max_element(values.begin(), values.end())));
+    else if (!values.empty())
+      check_residual_strength(node_, key, *std::max_element(values.begin(), values.end()));
     return values;
   }
   // Standard normal quantile of "percentile" (50: the median).
@@ -156,12 +165,15 @@ StrengthLaw read_strength_law(const CaseNode& node) {
     law.evaluate_model = [ratio](double sigma) { return ratio * sigma; };
   } else {
     const double strength = in.number("strength", "Pa", Range::positive());
+    check_residual_strength(node, "strength", strength);
     law.domain.second = 1e300;
     law.evaluate_model = [strength](double) { return strength; };
   }
   law.factor = in.number_or("factor", "1", Range::positive(), law.factor);
+  check_factor(node, "factor", law.factor);
   law.drained_cap = in.boolean_or("drained_cap", law.drained_cap);
   law.friction_angle = in.number_or("friction_angle", "deg", Range::open(0.0, 60.0), law.friction_angle);
+  check_angle(node, "friction_angle", law.friction_angle);
   law.minimum_ratio = in.number_or("minimum_ratio", "1", Range::non_negative(), law.minimum_ratio);
   law.minimum_strength = in.number_or("minimum_strength", "Pa", Range::positive(), law.minimum_strength);
   return law;

@@ -9,6 +9,7 @@
 
 #include "common/element_mean.hpp"
 #include "common/error.hpp"
+#include "common/plausible_material.hpp"
 #include "transfer_tool/import/csv_table.hpp"
 #include "transfer_tool/sample/mesh_geometry.hpp"
 
@@ -20,7 +21,7 @@ constexpr double least_saturation_pressure = 300;  // Pa, initial pore pressure 
 
 using Numbers = std::map<std::int64_t, std::size_t>;  // a table's own number to our index
 
-Numbers numbering(const CsvTable& table, const std::string& column) {
+Numbers numbering(CsvTable& table, const std::string& column) {
   Numbers index;
   const auto numbers = table.integers(column);
   for (std::size_t row = 0; row < numbers.size(); ++row)
@@ -29,12 +30,16 @@ Numbers numbering(const CsvTable& table, const std::string& column) {
 }
 
 // Rows of a result table in the mesh's own order. Throws InputError for numbers that are missing or unknown.
-std::vector<std::size_t> rows_in_order(const CsvTable& table, const std::string& column, const Numbers& mesh) {
+std::vector<std::size_t> rows_in_order(CsvTable& table, const std::string& column, const Numbers& mesh) {
   std::vector<std::size_t> row_of(mesh.size(), table.rows());
   const auto numbers = table.integers(column);
   for (std::size_t row = 0; row < numbers.size(); ++row) {
     const auto it = mesh.find(numbers[row]);
     if (it == mesh.end()) table.fail(row, column, fmt::format("{} is not in the mesh", numbers[row]));
+    if (row_of[it->second] != table.rows())
+      table.fail(row, column,
+                 fmt::format("{} occurs twice (first in line {}); a table holds one time, so keep the rows of that one",
+                             numbers[row], table.line_of(row_of[it->second])));
     row_of[it->second] = row;
   }
   for (const auto& [number, index] : mesh)
@@ -59,12 +64,13 @@ std::vector<double> interleaved(const std::vector<double>& x, const std::vector<
   return both;
 }
 
-void read_mesh(const CaseNode& root, Snapshot& snapshot, Numbers& nodes, Numbers& elements) {
-  const CsvTable node_table(root.file("nodes")), quad_table(root.file("quads"));
-  snapshot.position = interleaved(node_table.numbers("x"), node_table.numbers("y"));
+void read_mesh(const CaseNode& root, const std::vector<std::string>& ignored, Snapshot& snapshot, Numbers& nodes,
+               Numbers& elements) {
+  CsvTable node_table(root.file("nodes")), quad_table(root.file("quads"));
+  snapshot.position = interleaved(node_table.numbers("x", Quantity::length), node_table.numbers("y", Quantity::length));
   nodes = numbering(node_table, "node");
   elements = numbering(quad_table, "element");
-  snapshot.thickness = quad_table.numbers_or("thickness", 1.0);
+  snapshot.thickness = quad_table.numbers_or("thickness", Quantity::length, 1.0);
   std::array<std::vector<std::int64_t>, 4> corners;
   for (std::size_t a = 0; a < 4; ++a) corners[a] = quad_table.integers(fmt::format("n{}", a + 1));
   const auto regions = quad_table.texts("region");
@@ -82,7 +88,14 @@ void read_mesh(const CaseNode& root, Snapshot& snapshot, Numbers& nodes, Numbers
     if (scaled_jacobian(initial_corners(snapshot, row)) <= 0.0)
       quad_table.fail(row, "n1", "the quadrilateral is folded or its nodes run clockwise");
   }
-  if (!node_table.has("lines")) return;
+  const bool has_lines = node_table.has("lines");
+  node_table.finish(ignored);
+  quad_table.finish(ignored);
+  if (nodes.empty() || elements.empty())
+    throw InputError(fmt::format("{}: has no rows", (nodes.empty() ? node_table : quad_table).path().string()));
+  for (std::size_t e = 0; e < snapshot.thickness.size(); ++e)
+    if (!(snapshot.thickness[e] > 0.0)) quad_table.fail(e, "thickness", "a thickness must be positive");
+  if (!has_lines) return;
   std::map<std::string, std::vector<bool>> on_line;
   const auto lines = node_table.texts("lines");
   for (std::size_t node = 0; node < lines.size(); ++node) {
@@ -102,10 +115,10 @@ void read_mesh(const CaseNode& root, Snapshot& snapshot, Numbers& nodes, Numbers
 }
 
 // (elements, 4) effective stress, tension positive.
-std::vector<double> read_stress(const CsvTable& table, const std::vector<std::size_t>& rows, double sign) {
-  const auto xx = picked(table.numbers("sxx"), rows), yy = picked(table.numbers("syy"), rows);
-  const auto xy = picked(table.numbers("sxy"), rows);
-  const auto zz = table.has("szz") ? picked(table.numbers("szz"), rows) : std::vector<double>{};
+std::vector<double> read_stress(CsvTable& table, const std::vector<std::size_t>& rows, double sign) {
+  const auto stress_of = [&](const char* name) { return picked(table.numbers(name, Quantity::pressure), rows); };
+  const auto xx = stress_of("sxx"), yy = stress_of("syy"), xy = stress_of("sxy");
+  const auto zz = table.has("szz") ? stress_of("szz") : std::vector<double>{};
   std::vector<double> stress(4 * rows.size());
   for (std::size_t e = 0; e < rows.size(); ++e) {
     stress[4 * e] = sign * xx[e];
@@ -140,7 +153,14 @@ void derive_element_fields(Snapshot& snapshot, const std::vector<double>& initia
 }
 
 void set_base_velocity(const CaseNode& root, Snapshot& snapshot) {
+  const bool given = root.has("base_line");
   const std::string name = root.text_or("base_line", "base");
+  std::vector<std::string> names;
+  for (const auto& line : snapshot.lines)
+    if (!line.edges.empty()) names.push_back(line.name);
+  if (given && std::find(names.begin(), names.end(), name) == names.end())
+    root.fail("base_line", fmt::format("no edge of the mesh lies on a line '{}'.{} Lines of the table 'nodes': {}",
+                                       name, did_you_mean(name, names), names.empty() ? "none" : joined(names)));
   for (const auto& line : snapshot.lines) {
     if (line.name != name) continue;
     std::vector<std::int64_t> nodes = line.edges;
@@ -166,12 +186,18 @@ Snapshot import_tables(const CaseFile& file, Provenance& provenance) {
                                                    "compression_positive") == "compression_positive";
 
   Numbers nodes, elements;
-  read_mesh(root, snapshot, nodes, elements);
+  const auto ignored = root.texts_or("ignore_columns", {});
+  read_mesh(root, ignored, snapshot, nodes, elements);
   const CaseNode region_options = root.object("regions");
   std::vector<double> density, porosity;
   for (const auto& name : snapshot.region_names) {
     const CaseNode region = region_options.object(name);
     density.push_back(region.number("density", "kg/m3", Range::positive()));
+    MaterialSetting setting;
+    setting.gravity = snapshot.gravity;
+    setting.water_density = snapshot.fluid_density;
+    setting.has_water = !snapshot.phreatic_line.empty();
+    check_material(region, setting);
     porosity.push_back(region.number_or("porosity", "1", Range::open(0.0, 1.0), 0.4));
   }
   for (const std::int32_t region : snapshot.region_id) {
@@ -179,27 +205,36 @@ Snapshot import_tables(const CaseFile& file, Provenance& provenance) {
     snapshot.porosity.push_back(porosity[static_cast<std::size_t>(region)]);
   }
 
-  const CsvTable node_state(root.file("node_state")), element_state(root.file("element_state"));
+  CsvTable node_state(root.file("node_state")), element_state(root.file("element_state"));
   const auto node_rows = rows_in_order(node_state, "node", nodes);
   const auto element_rows = rows_in_order(element_state, "element", elements);
-  const auto nodal = [&](const char* name) { return picked(node_state.numbers_or(name, 0.0), node_rows); };
-  snapshot.displacement = interleaved(nodal("ux"), nodal("uy"));
-  snapshot.velocity = interleaved(nodal("vx"), nodal("vy"));
-  snapshot.acceleration = interleaved(nodal("ax"), nodal("ay"));
-  snapshot.pore_pressure = picked(node_state.numbers("p"), node_rows);
+  const auto nodal = [&](const char* x, const char* y, Quantity quantity) {
+    return interleaved(picked(node_state.numbers_or(x, quantity, 0.0), node_rows),
+                       picked(node_state.numbers_or(y, quantity, 0.0), node_rows));
+  };
+  snapshot.displacement = nodal("ux", "uy", Quantity::length);
+  snapshot.velocity = nodal("vx", "vy", Quantity::velocity);
+  snapshot.acceleration = nodal("ax", "ay", Quantity::acceleration);
+  snapshot.pore_pressure = picked(node_state.numbers("p", Quantity::pressure), node_rows);
   const double sign = compression_positive ? -1.0 : 1.0;
   snapshot.effective_stress = read_stress(element_state, element_rows, sign);
-  snapshot.shear_strain = picked(element_state.numbers_or("gamma", 0.0), element_rows);
+  snapshot.shear_strain = picked(element_state.numbers_or("gamma", Quantity::strain, 0.0), element_rows);
+  node_state.finish(ignored);
+  element_state.finish(ignored);
 
   std::vector<double> initial_pressure = snapshot.pore_pressure;
   snapshot.initial_effective_stress = snapshot.effective_stress;
   if (root.has("initial_node_state")) {
-    const CsvTable table(root.file("initial_node_state"));
-    initial_pressure = picked(table.numbers("p"), rows_in_order(table, "node", nodes));
+    CsvTable table(root.file("initial_node_state"));
+    initial_pressure = picked(table.numbers("p", Quantity::pressure), rows_in_order(table, "node", nodes));
+    for (const char* name : {"ux", "uy", "vx", "vy", "ax", "ay"}) table.has(name);  // there, but of no use
+    table.finish(ignored);
   }
   if (root.has("initial_element_state")) {
-    const CsvTable table(root.file("initial_element_state"));
+    CsvTable table(root.file("initial_element_state"));
     snapshot.initial_effective_stress = read_stress(table, rows_in_order(table, "element", elements), sign);
+    table.has("gamma");  // there, but of no use
+    table.finish(ignored);
   }
   for (std::size_t node = 0; node < snapshot.nodes(); ++node)
     snapshot.excess_pore_pressure.push_back(snapshot.pore_pressure[node] - initial_pressure[node]);

@@ -31,7 +31,6 @@ FieldReport read_field(const Hdf5Reader& file, const std::string& name) {
   for (std::size_t i = 0; i < rows; ++i)
     for (std::size_t k = 0; k < columns; ++k) {
       const double value = values[columns * i + k];
-      if (!std::isfinite(value)) file.fail(name, fmt::format("entry {} is not finite", i));
       field.least[k] = std::min(field.least[k], value);
       field.most[k] = std::max(field.most[k], value);
       field.mean[k] += value / static_cast<double>(rows);
@@ -102,15 +101,6 @@ void read_provenance(const Hdf5Reader& file, FileReport& report) {
   for (std::size_t i = 0; i < std::min(names.size(), sums.size()); ++i) report.inputs.emplace_back(names[i], sums[i]);
 }
 
-bool is_group(const Hdf5Reader& file, const std::string& name) {
-  try {
-    file.members(name);
-    return true;
-  } catch (const InputError&) {
-    return false;
-  }
-}
-
 // Datasets that no part of the format describes, such as the restart state that a program keeps in its own group.
 void read_other(const Hdf5Reader& file, const std::string& group, FileReport& report) {
   for (const auto& name : file.members(group)) {
@@ -118,7 +108,7 @@ void read_other(const Hdf5Reader& file, const std::string& group, FileReport& re
     if (place == "/tailrun/provenance" || place == "/tailrun/notes" || place == "/tailrun/terrain" ||
         place == "/tailrun/lines" || place.ends_with("_names"))
       continue;
-    if (is_group(file, place))
+    if (file.is_group(place))
       read_other(file, place, report);
     else
       report.other.emplace_back(place, file.shape(place));
@@ -143,7 +133,11 @@ FileReport read_file_report(const std::filesystem::path& path) {
                     "attribute 'format'",
                     path.string()));
   report.kind = file.text_attribute("/tailrun", "format");
-  report.format_version = static_cast<int>(file.number_attribute("/tailrun", "format_version"));
+  const double format_version = file.number_attribute("/tailrun", "format_version");
+  if (format_version != std::floor(format_version) || std::abs(format_version) > 1e6)
+    file.fail("/tailrun",
+              fmt::format("attribute 'format_version' is {:g}, but a whole number is required", format_version));
+  report.format_version = static_cast<int>(format_version);
   for (const char* name :
        {"time_s", "transfer_time_s", "dimension", "particle_size_m", "gravity_m_s2", "fluid_density_kg_m3", "step"})
     if (file.has_attribute("/tailrun", name))

@@ -58,3 +58,46 @@ TEST_CASE("wrong type, range, missing key and broken JSON are told apart") {
   CHECK(contains(message([] { written("{\"a\": 1,}"); }), "not valid JSON"));
   CHECK(contains(message([] { CaseFile("/nonexistent/fem.json"); }), "no such case file"));
 }
+
+namespace {
+
+std::string refusal(const std::string& text) {
+  return message([&] { written(text); });
+}
+
+}  // namespace
+
+TEST_CASE("a key that is there twice is refused with its pointer, at any depth and in lists") {
+  CHECK(contains(refusal(R"({"a": 1, "a": 2})"), "/a: this key is there twice"));
+  CHECK(contains(refusal(R"({"m": {"clay": {"phi": 1, "phi": 1}}})"), "/m/clay/phi: this key is there twice"));
+  CHECK(contains(refusal(R"({"rules": [{"x": 1}, {"y": 1, "z": [0], "y": 2}]})"), "/rules/1/y: this key"));
+  CHECK(refusal(R"({"a": {"x": 1}, "b": {"x": 1}, "c": [{"x": 1}, {"x": 1}]})").empty());
+}
+
+TEST_CASE("numbers beyond double, deep nesting and integers beyond long") {
+  CHECK(contains(refusal(R"({"shake": {"duration": 1e400}})"), "/shake/duration: a number beyond the range of double"));
+  CHECK(contains(refusal(R"({"a": [0, -1e999]})"), "/a/1: a number beyond"));
+  const auto nested = [](std::size_t levels) {
+    return "{\"a\": " + std::string(levels, '[') + std::string(levels, ']') + "}";
+  };
+  CHECK(refusal(nested(90)).empty());
+  CHECK(contains(refusal(nested(100000)), "nested deeper than 100 levels"));
+  CHECK(contains(refusal(std::string(100000, '[') + std::string(100000, ']')), "nested deeper than 100 levels"));
+  const CaseFile file = written(R"({"n": 18446744073709551615, "m": -3})");
+  CHECK(contains(message([&] { file.root().integer("n", 0, 10); }), "an integer in [0, 10] is required"));
+}
+
+TEST_CASE("what is not JSON is said in words, with line and column") {
+  CHECK(contains(refusal("{\n  \"a\": 1,\n}"), "line 3, column 1: a comma before the closing bracket"));
+  CHECK(contains(refusal("{\"a\": 1 \"b\": 2}"), "line 1, column 11: a comma or a closing bracket is missing"));
+  CHECK(contains(refusal("{\"a\": 0,5}"), "where a key in double quotes is required"));
+  CHECK(contains(refusal("{'a': 1}"), "double quotes"));
+  CHECK(contains(refusal("{\"a\": NaN}"), "NaN and Infinity are not allowed"));
+  CHECK(contains(refusal("{\"a\": 1"), "ends too early"));
+  CHECK(contains(refusal("{\"a\": \"M\xfcnchen\"}"), "save the file as UTF-8"));
+  CHECK(contains(refusal(""), "the file is empty"));
+  CHECK(contains(refusal("[1, 2]"), "must be a JSON object"));
+  for (const char* text : {"{\n  \"a\": 1,\n}", "{\"a\": .5}", "{\"a\": tru}", "{", "{\"a\": 1e999}", "{\"a\" 1}"})
+    CHECK_FALSE(contains(refusal(text), "json.exception"));
+  CHECK(contains(message([] { CaseFile{std::filesystem::temp_directory_path()}; }), "is a folder"));
+}

@@ -1,8 +1,12 @@
 // The two file formats: what is written is read back, and what is damaged is refused.
 #include <doctest/doctest.h>
 
+#include <chrono>
 #include <fstream>
+#include <functional>
+#include <iterator>
 #include <limits>
+#include <thread>
 
 #include "common/error.hpp"
 #include "common/particles.hpp"
@@ -99,4 +103,72 @@ TEST_CASE("the wrong file, a cut file and values that are not finite are refused
 
 TEST_CASE("SHA-256 of a known text") {
   CHECK(sha256_of_text("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+namespace {
+
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// Flips one bit in every `stride`th byte of the file, one after the other. `read` returns whether what it read is as
+// it was; it throws InputError where the damage is noticed. Returns how many flips were noticed.
+int flips_noticed(const std::filesystem::path& path, std::size_t stride, const std::function<bool()>& read) {
+  const std::string whole = bytes_of(path);
+  int noticed = 0, silent = 0;
+  for (std::size_t k = 0; k < whole.size(); k += stride) {
+    std::string damaged = whole;
+    damaged[k] = static_cast<char>(damaged[k] ^ (1 << (k / stride % 8)));
+    std::ofstream(path, std::ios::binary) << damaged;
+    try {
+      if (!read()) ++silent;
+    } catch (const InputError&) {
+      ++noticed;
+    }
+  }
+  CHECK(silent == 0);
+  return noticed;
+}
+
+}  // namespace
+
+TEST_CASE("one flipped bit anywhere is noticed, or lies where no value does") {
+  const auto snapshot_path = folder / "tailrun_flip_snapshot.h5", particles_path = folder / "tailrun_flip_particles.h5";
+  const Snapshot s = small_snapshot();
+  write_snapshot(snapshot_path, s, {});
+  CHECK(flips_noticed(snapshot_path, 61, [&] {
+          const Snapshot r = read_snapshot(snapshot_path);
+          return r.displacement == s.displacement && r.velocity == s.velocity && r.time == s.time &&
+                 r.effective_stress == s.effective_stress && r.density == s.density && r.quads == s.quads &&
+                 r.position == s.position && r.pore_pressure == s.pore_pressure && r.gravity == s.gravity &&
+                 r.region_names == s.region_names && r.phreatic_line == s.phreatic_line;
+        }) > 50);
+  const ParticleSet p = small_particles();
+  write_particles(particles_path, p, {});
+  CHECK(flips_noticed(particles_path, 41, [&] {
+          const ParticleSet r = read_particles(particles_path);
+          return r.position == p.position && r.velocity == p.velocity && r.mass == p.mass && r.volume == p.volume &&
+                 r.effective_stress == p.effective_stress && r.pore_pressure == p.pore_pressure &&
+                 r.residual_strength == p.residual_strength && r.notes == p.notes && r.extra == p.extra &&
+                 r.material_names == p.material_names && r.time == p.time;
+        }) > 50);
+}
+
+TEST_CASE("equal states make files of equal bytes") {
+  const auto first = folder / "tailrun_equal_1.h5", second = folder / "tailrun_equal_2.h5";
+  write_particles(first, small_particles(), {});
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // times in HDF5 headers count whole seconds
+  write_particles(second, small_particles(), {});
+  CHECK(bytes_of(first) == bytes_of(second));
+  write_snapshot(first, small_snapshot(), {});
+  write_snapshot(second, small_snapshot(), {});
+  CHECK(bytes_of(first) == bytes_of(second));
+}
+
+TEST_CASE("a device or a folder is not replaced by a file") {
+  CHECK_THROWS_WITH_AS(write_particles("/dev/null", small_particles(), {}), doctest::Contains("is a device"),
+                       InputError);
+  CHECK_THROWS_WITH_AS(write_particles(folder, small_particles(), {}), doctest::Contains("is a folder"), InputError);
+  CHECK(std::filesystem::is_character_file("/dev/null"));
 }

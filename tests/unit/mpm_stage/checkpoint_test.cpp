@@ -1,10 +1,13 @@
 #include "mpm_stage/checkpoint/checkpoint.hpp"
 
 #include <doctest/doctest.h>
+#include <hdf5.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
+#include <functional>
 #include <sstream>
 
 #include "common/error.hpp"
@@ -124,4 +127,74 @@ TEST_CASE("a cut-off checkpoint is refused") {
   std::filesystem::resize_file(folder / "out/checkpoint.h5",
                                std::filesystem::file_size(folder / "out/checkpoint.h5") / 2);
   CHECK_THROWS_AS(run(folder, "out", true, 0), InputError);
+}
+
+namespace {
+
+// Changes the values of a dataset or of an attribute of /numbers, as a program that damages them would.
+template <class T>
+void change(const std::filesystem::path& path, const std::string& name, hid_t type,
+            const std::function<void(std::vector<T>&)>& action) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t dataset = H5Dopen2(file, name.c_str(), H5P_DEFAULT), space = H5Dget_space(dataset);
+  std::vector<T> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+  action(values);
+  H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+  H5Sclose(space);
+  H5Dclose(dataset);
+  H5Fclose(file);
+}
+
+void set_number(const std::filesystem::path& path, const char* name, double value) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), group = H5Gopen2(file, "/numbers", H5P_DEFAULT);
+  H5Adelete(group, name);
+  const hid_t space = H5Screate(H5S_SCALAR);
+  const hid_t attribute = H5Acreate2(group, name, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT);
+  H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value);
+  H5Aclose(attribute);
+  H5Sclose(space);
+  H5Gclose(group);
+  H5Fclose(file);
+}
+
+}  // namespace
+
+TEST_CASE("a checkpoint that cannot be a state of the run is refused, with the dataset") {
+  const Folder folder("trusted");
+  CHECK_THROWS_AS(run(folder, "out", false, 5), ComputationError);
+  const auto checkpoint = folder / "out/checkpoint.h5", sound = folder / "sound.h5";
+  std::filesystem::copy_file(checkpoint, sound);
+  using Doubles = std::vector<double>;
+  using Integers = std::vector<std::int64_t>;
+  const auto doubles = [&](const std::string& name, const std::function<void(Doubles&)>& action) {
+    return [=] { change<double>(checkpoint, name, H5T_NATIVE_DOUBLE, action); };
+  };
+  const auto integers = [&](const std::string& name, const std::function<void(Integers&)>& action) {
+    return [=] { change<std::int64_t>(checkpoint, name, H5T_NATIVE_INT64, action); };
+  };
+  const auto number = [&](const char* name, double value) { return [=] { set_number(checkpoint, name, value); }; };
+  const auto refused = [&](const std::function<void()>& damage, const std::string& what) {
+    std::filesystem::copy_file(sound, checkpoint, std::filesystem::copy_options::overwrite_existing);
+    damage();
+    CAPTURE(what);
+    CHECK_THROWS_WITH_AS(run(folder, "out", true, 0), doctest::Contains(what.c_str()), InputError);
+    CHECK(std::filesystem::exists(checkpoint));
+  };
+  refused(doubles("/particles/position_0", [](Doubles& x) { x[7] = std::nan(""); }), "/particles/position_0");
+  refused(doubles("/particles/position_1", [](Doubles& x) { x[3] += 5.0; }), "not in its block");
+  refused(doubles("/particles/position_0", [](Doubles& x) { std::reverse(x.begin(), x.end()); }), "not in its block");
+  refused(doubles("/particles/volume", [](Doubles& x) { x[0] = -1.0; }), "/particles/volume");
+  refused(doubles("/particles/mass", [](Doubles& x) { x[0] *= 2.0; }), "another order");
+  refused(integers("/particles/identity", [](Integers& x) { x[0] = x[1]; }), "is there twice");
+  refused(integers("/particles/material", [](Integers& x) { x[0] = 1 - x[0]; }), "/particles/material");
+  refused(integers("/grid/blocks", [](Integers& x) { x[0] = std::int64_t{1} << 40; }), "/grid/blocks");
+  refused(integers("/grid/blocks", [](Integers& x) { x[2] = x[0], x[3] = x[1]; }), "does not come after");
+  refused(doubles("/grid/wave_speed", [](Doubles& x) { x[0] = std::nan(""); }), "/grid/wave_speed");
+  refused(doubles("/series/ledger", [](Doubles& x) { x[0] = 1e9; }), "/series/ledger");
+  refused(number("time", std::nan("")), "'time' is nan");
+  refused(number("time", 1e9), "'time' is 1e+09");
+  refused(number("next_time_step", 0.0), "next_time_step");
+  refused(number("steps", 2.5), "'steps' is 2.5");
+  refused(number("drift", 7.0), "'drift' is 7");
 }

@@ -88,3 +88,49 @@ TEST_CASE("faults in the tables are named with file, line and column") {
   CHECK(message("element_state.csv", "element,sxx,syy,sxy\n5,1,nan,1\n6,1,1,1\n").find("found 'nan'") !=
         std::string::npos);
 }
+
+TEST_CASE("columns are converted by their header, in whichever form it names the unit") {
+  const Tables tables;
+  tables.folder.write(
+      "node_state.csv",
+      "\xEF\xBB\xBFnode,ux_mm,vx [cm/s],vy_ft_s,p (psi)\r\n11,+1,50,0,1\r\n12,1,50,0,1\r\n13,1,80,0,1\r\n"
+      "14,+1.0E+00,100,1,1\r\n15,1,100,0,1\r\n16,1,100,0,1\r\n");
+  const auto snapshot = tables.snapshot();
+  CHECK(snapshot.displacement[0] == doctest::Approx(1e-3));
+  CHECK(snapshot.velocity[0] == doctest::Approx(0.5));
+  CHECK(snapshot.velocity[2 * 3 + 1] == doctest::Approx(0.3048));
+  CHECK(snapshot.pore_pressure[0] == doctest::Approx(6894.757));
+}
+
+TEST_CASE("columns that are not known, units of another quantity, rows and columns that are there twice") {
+  const auto message = [](const char* name, const std::string& text) {
+    const Tables tables;
+    tables.folder.write(name, text);
+    return example::message_of<tailrun::InputError>([&] { tables.snapshot(); });
+  };
+  const auto state = [&](const std::string& header) {
+    std::string text = header + "\n";
+    for (int node = 11; node <= 16; ++node) text += std::to_string(node) + ",1,1\n";
+    return message("node_state.csv", text);
+  };
+  CHECK(state("node,p,VX").find("unknown column 'VX'. Did you mean 'vx'?") != std::string::npos);
+  CHECK(state("node,p,vx_furlong_s").find("unknown column 'vx_furlong_s'. Did you mean 'vx'?") != std::string::npos);
+  CHECK(state("node,p,temperature").find("ignore_columns") != std::string::npos);
+  CHECK(state("node,p,vx_kPa").find("its unit is 'kPa', but a velocity is required") != std::string::npos);
+  CHECK(state("node,p,vx [knots]").find("does not know the unit 'knots'") != std::string::npos);
+  CHECK(state("node,p,p_kPa").find("columns 'p' and 'p_kPa' are the same quantity") != std::string::npos);
+  CHECK(message("element_state.csv", "element,sxx,syy,sxy\n5,1,1,1\n6,1,1,1\n5,2,2,2\n")
+            .find("line 4, column 'element': 5 occurs twice (first in line 2)") != std::string::npos);
+}
+
+TEST_CASE("columns can be left out by name, and a base line must exist") {
+  const Tables tables;
+  tables.folder.write("element_state.csv", "element,sxx,syy,sxy,p_mean,r_u\n5,1,1,1,9,9\n6,1,1,1,9,9\n");
+  CHECK_NOTHROW(tables.snapshot(R"(, "ignore_columns": ["p_mean", "r_u"])"));
+  const auto refused = [&](const std::string& more) {
+    return example::message_of<tailrun::InputError>([&] { Tables().snapshot(more); });
+  };
+  CHECK(refused(R"(, "base_line": "bass")").find("no edge of the mesh lies on a line 'bass'. Did you mean 'base'?") !=
+        std::string::npos);
+  CHECK(refused(R"(, "base_line": "base")").empty());
+}

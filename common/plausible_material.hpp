@@ -1,0 +1,43 @@
+// Numbers of a material that no soil has, most often because their unit is another one. What nothing sensible can
+// follow from is an error, what is only unlikely a warning (common/warnings.hpp). The same keys mean the same in
+// fem.json and mpm.json, so both programs ask here.
+#pragma once
+
+#include "common/case_file.hpp"
+
+namespace tailrun {
+
+// What the material lies in. Without gravity nothing is checked: such scenes are patches and waves in units of their
+// own.
+struct MaterialSetting {
+  double gravity = 9.81;          // m/s2, its size
+  double height = 10.0;           // m, of the soil: its own weight is what strength and stiffness are compared with
+  double water_density = 1000.0;  // kg/m3
+  bool has_water = false;
+};
+
+// One entry of "materials". Keys, as far as they are there, and their reasons:
+//   density          under 30: g/cm3 or kN/m3 (error). Under water's, where there is water, the soil would float and
+//   its
+//                    effective stress be a tension; beyond 4000 no soil or rock of a dam is
+//   cohesion         above 0 and under both 100 Pa and a thousandth of the soil's weight: kPa
+//   shear_modulus, youngs_modulus
+//                    under half of the soil's weight, which it would not carry without flattening: kPa or MPa
+//   friction_angle, residual_friction_angle, phi_cv
+//                    above 0 and under 1.6: radians
+//   G0               a coefficient of 100 to 2000 in PM4: above 5000 it is taken for a modulus
+void check_material(const CaseNode& material, const MaterialSetting& setting);
+
+// Pa, of the pore water: under 1e7 even with air in it, 2.2e9 without: kPa or MPa.
+void check_water_stiffness(const CaseNode& node, const std::string& key, double bulk_modulus, double gravity);
+
+// "factor" on a strength: above 10 it is a percentage (error).
+void check_factor(const CaseNode& node, const std::string& key, double factor);
+
+// A residual strength of liquefied soil, Pa: above 0 and under 100 it is kPa (soils have 1 to 50 kPa).
+void check_residual_strength(const CaseNode& node, const std::string& key, double strength);
+
+// A friction angle in degrees that looks like radians.
+void check_angle(const CaseNode& node, const std::string& key, double degrees);
+
+}  // namespace tailrun

@@ -1,0 +1,146 @@
+// What soil cannot be is said, with the likely unit; what it can be is not.
+#include <doctest/doctest.h>
+
+#include <fstream>
+
+#include "common/error.hpp"
+#include "common/plausible_material.hpp"
+#include "common/plausible_state.hpp"
+#include "common/warnings.hpp"
+
+using namespace tailrun;
+
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+// The error, or else the warnings, of an action.
+std::string said(const std::function<void()>& action) {
+  forget_warnings();
+  try {
+    action();
+  } catch (const InputError& error) {
+    return std::string("error: ") + error.what();
+  }
+  std::string text;
+  for (const auto& warning : warnings()) text += warning + "\n";
+  return text;
+}
+
+std::string said_of_material(const std::string& keys, const MaterialSetting& setting = {}) {
+  const auto path = std::filesystem::temp_directory_path() / "tailrun_plausible.json";
+  std::ofstream(path) << "{\"materials\": {\"clay\": {" << keys << "}}}";
+  const CaseFile file(path);
+  return said([&] { check_material(file.root().object("materials").object("clay"), setting); });
+}
+
+// A column of soil, 10 m of 2 m high elements, water table at its surface.
+Snapshot column(double stress_factor = 1.0, double pressure_factor = 1.0) {
+  Snapshot s;
+  s.region_names = {"soil"};
+  s.phreatic_line = {-1, 10, 2, 10};
+  for (int i = 0; i <= 5; ++i) s.position.insert(s.position.end(), {0.0, 2.0 * i, 1.0, 2.0 * i});
+  for (std::int64_t e = 0; e < 5; ++e) {
+    s.quads.insert(s.quads.end(), {2 * e, 2 * e + 1, 2 * e + 3, 2 * e + 2});
+    const double depth = 9.0 - 2.0 * static_cast<double>(e);
+    s.region_id.push_back(0);
+    s.density.push_back(2000.0);
+    s.depth.push_back(depth);
+    s.initial_vertical_effective_stress.push_back(stress_factor * 1000.0 * 9.81 * depth);
+    s.initial_pore_pressure.push_back(pressure_factor * 1000.0 * 9.81 * depth);
+    s.excess_pore_pressure_ratio.push_back(0.5);
+  }
+  return s;
+}
+
+std::string said_of(const Snapshot& snapshot) {
+  return said([&] { check_state(columns_of(snapshot, "s.h5", {}, true)); });
+}
+
+}  // namespace
+
+TEST_CASE("materials in another unit") {
+  MaterialSetting wet;
+  wet.has_water = true;
+  CHECK(said_of_material(R"("density": 1900, "cohesion": 15000, "shear_modulus": 4e7, "friction_angle": 33)", wet) ==
+        "");
+  CHECK(said_of_material(R"("density": 1900, "cohesion": 0, "G0": 476)", wet) == "");
+  CHECK(contains(said_of_material(R"("density": 1.9)"), "1.9 g/cm3 are 1900 kg/m3"));
+  CHECK(said_of_material(R"("density": 1.9)").starts_with("error: "));
+  CHECK(contains(said_of_material(R"("density": 19)"), "19 kN/m3 are 1937 kg/m3"));
+  CHECK(contains(said_of_material(R"("density": 900)", wet), "/materials/clay/density: 900 kg/m3 is less than water"));
+  CHECK(said_of_material(R"("density": 900)") == "");
+  CHECK(contains(said_of_material(R"("density": 117)", wet), "117 lb/ft3 are 1874 kg/m3"));
+  CHECK(contains(said_of_material(R"("cohesion": 15)"), "is it 15 kPa = 15000 Pa?"));
+  CHECK(contains(said_of_material(R"("shear_modulus": 40000)"), "is it 40000 kPa"));
+  CHECK(contains(said_of_material(R"("youngs_modulus": 5000)"), "go flat"));
+  CHECK(contains(said_of_material(R"("friction_angle": 0.59)"), "0.59 radians would be 33.8 degrees"));
+  CHECK(contains(said_of_material(R"("G0": 47600000)"), "coefficient without unit"));
+}
+
+TEST_CASE("small scenes and scenes without gravity keep their small numbers") {
+  MaterialSetting tank;
+  tank.height = 0.2;
+  CHECK(said_of_material(R"("density": 1000, "cohesion": 20, "youngs_modulus": 1e5)", tank) == "");
+  MaterialSetting none;
+  none.gravity = 0.0;
+  CHECK(said_of_material(R"("density": 1e-6, "cohesion": 1, "youngs_modulus": 1)", none) == "");
+}
+
+TEST_CASE("a state in balance passes; one in another unit or of another sign does not") {
+  CHECK(said_of(column()) == "");
+  CHECK(contains(said_of(column(1e-3, 1e-3)), "most likely kPa were taken for Pa"));
+  CHECK(said_of(column(1e-3, 1e-3)).starts_with("error: s.h5: "));
+  CHECK(contains(said_of(column(1.0 / 47.88, 1.0 / 47.88)), "most likely psf were taken for Pa"));
+  CHECK(contains(said_of(column(1e3, 1e3)), "most likely Pa were taken for kPa"));
+  CHECK(contains(said_of(column(-1.0)), "error: s.h5: sigma'_v0"));
+  CHECK(contains(said_of(column(-1.0)), "most likely the sign of the stresses"));
+  CHECK(contains(said_of(column(-1.0)), "5 of 5 elements"));
+  CHECK(contains(said_of(column(1.0, 1e-3)), "initial pore pressure below the phreatic line is 0.001 times"));
+  CHECK(contains(said_of(column(3.0, -1.0)), "is a suction"));
+}
+
+TEST_CASE("densities, r_u and single elements in tension") {
+  Snapshot s = column();
+  s.density.assign(5, 1.9);
+  CHECK(contains(said_of(s), "most likely g/cm3"));
+  s.density.assign(5, 900.0);
+  CHECK(contains(said_of(s), "soil with water in it is heavier than water"));
+  s = column();
+  s.excess_pore_pressure_ratio.assign(5, -2.5);
+  CHECK(contains(said_of(s), "r_u is outside of [-0.5, 1.2] in 5 of 5 elements, -2.5 to -2.5"));
+  s = column();
+  s.initial_vertical_effective_stress[4] = -100.0;
+  CHECK(contains(said_of(s), "not a compression in 1 of 5 elements"));
+  CHECK_FALSE(said_of(s).starts_with("error"));
+  s.gravity = 0.0;
+  CHECK(said_of(s) == "");
+}
+
+TEST_CASE("particles are judged by the column above them") {
+  ParticleSet p;
+  p.material_names = {"clay"};
+  for (int i = 0; i < 10; ++i)
+    for (int j = 0; j < 10; ++j) {
+      p.position.insert(p.position.end(), {i + 0.5, j + 0.5, 0.0});
+      const double vertical = -1900.0 * 9.81 * (10.0 - (j + 0.5));
+      p.effective_stress.insert(p.effective_stress.end(), {0.5 * vertical, vertical, 0.5 * vertical, 0.0});
+      p.mass.push_back(1900.0);
+      p.volume.push_back(1.0);
+      p.pore_pressure.push_back(0.0);
+    }
+  const auto said_of_particles = [&] { return said([&] { check_state(columns_of(p, "p.h5", 9.81)); }); };
+  CHECK(said_of_particles() == "");
+  const auto scaled = [&](double factor) {
+    for (double& v : p.effective_stress) v *= factor;
+    const std::string text = said_of_particles();
+    for (double& v : p.effective_stress) v /= factor;
+    return text;
+  };
+  CHECK(contains(scaled(1e-3), "kPa were taken for Pa"));
+  CHECK(contains(scaled(-1.0), "most likely the sign"));
+  p.effective_stress.assign(400, 0.0);
+  CHECK(said_of_particles() == "");
+}
