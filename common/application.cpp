@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <hdf5.h>
-#include <omp.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -14,6 +13,7 @@
 #include <new>
 
 #include "common/error.hpp"
+#include "common/patient_threads.hpp"
 #include "common/output_place.hpp"
 #include "common/provenance.hpp"
 
@@ -56,8 +56,9 @@ void add_common_options(CLI::App& app) {
   app.add_flag_callback(
       "--verbose", [] { spdlog::set_level(spdlog::level::debug); }, "Say more: steps that were cut, and why");
   app.add_option_function<int>(
-         "--threads", [](int count) { omp_set_num_threads(count); },
-         "OpenMP threads (default: OMP_NUM_THREADS, else all cores); the results do not depend on it")
+         "--threads", [](int count) { set_threads(count); },
+         "OpenMP threads (default: OMP_NUM_THREADS, else as many of the cores as the scene keeps busy); the results do not "
+         "depend on it")
       ->check(CLI::Range(1, 1024));
   app.fallthrough();
 }

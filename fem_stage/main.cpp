@@ -23,6 +23,7 @@
 #include "common/application.hpp"
 #include "common/error.hpp"
 #include "common/output_place.hpp"
+#include "common/patient_threads.hpp"
 #include "common/plausible_state.hpp"
 #include "fem_stage/element_test/calibration.hpp"
 #include "fem_stage/element_test/element_test.hpp"
@@ -178,6 +179,7 @@ void make_consolidation(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  wait_patiently(argv);
   CLI::App app("Finite element stage: shaking and liquefaction triggering until the hand-over", "fem_stage");
   add_common_options(app);
   app.require_subcommand(1);

@@ -17,6 +17,7 @@
 
 #include "common/application.hpp"
 #include "common/output_place.hpp"
+#include "common/patient_threads.hpp"
 #include "mpm_stage/run/interrupt.hpp"
 #include "mpm_stage/run/runout.hpp"
 #include "mpm_stage/scene/scene.hpp"
@@ -24,7 +25,15 @@
 using namespace tailrun;
 using namespace tailrun::mpm;
 
+namespace {
+
+// Fewer keep a thread busy for less time than its start and end take in each phase of a step.
+constexpr std::size_t particles_per_thread = 2000;
+
+}  // namespace
+
 int main(int argc, char** argv) {
+  wait_patiently(argv);
   CLI::App app{"Runout of liquefied soil by the material point method", "mpm_stage"};
   add_common_options(app);
   std::filesystem::path case_path, output, particles;
@@ -53,6 +62,7 @@ int main(int argc, char** argv) {
     control.resume_command += " --resume";
     control.interruption = [](long) { return noted_signal(); };
     note_signals();
+    limit_threads(scene.particles.count(), particles_per_thread);
     if (scene.dimension == 2)
       run_scene<2>(scene, output, provenance, control);
     else

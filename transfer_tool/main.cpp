@@ -19,6 +19,7 @@
 #include "common/application.hpp"
 #include "common/error.hpp"
 #include "common/output_place.hpp"
+#include "common/patient_threads.hpp"
 #include "common/plausible_state.hpp"
 #include "common/warnings.hpp"
 #include "transfer_tool/audit/audit.hpp"
@@ -120,6 +121,7 @@ void import(const std::string& case_path, const std::string& output_path) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  wait_patiently(argv);
   CLI::App app{"Hands the finite elements' state over to the particles", "transfer_tool"};
   tailrun::add_common_options(app);
   app.require_subcommand(1);

@@ -133,6 +133,7 @@ void read_base_motion(const CaseNode& root, Scene& scene) {
   if (const auto peak = node->number_if("peak_acceleration", "m/s2", Range::positive()))
     motion = scaled_to_peak(std::move(motion), *peak);
   scene.base.start = node->number_or("start", "s", Range::non_negative(), scene.particles.transfer_time);
+  warn_about_late_start(motion, scene.base.start);
   const auto direction = node->numbers_or("direction", "1", Range::any(), {1.0, 0.0}, 2);
   const double length = std::hypot(direction[0], direction[1]);
   if (!(length > 0.0)) node->fail("direction", "must not be zero");
