@@ -71,9 +71,7 @@ Json& member_of(Json& object, std::size_t depth, const std::string& place, const
 }  // namespace
 
 CaseSetting parse_setting(const std::string& text) {
-  const auto fail = [&](const std::string& message) {
-    throw InputError(fmt::format("--set {}: {}", text, message));
-  };
+  const auto fail = [&](const std::string& message) { throw InputError(fmt::format("--set {}: {}", text, message)); };
   try {
     Json(text).dump();
   } catch (const nlohmann::json::type_error&) {

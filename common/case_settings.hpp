@@ -1,6 +1,7 @@
-// Values of the case file given on the command line, `--set /json/pointer=value`. They replace what the file says before
-// anything is read, so that they are checked as if they stood in it. What a setting can do: give a key of an object that
-// is there, or an element of a list that is there. A misspelt way to it is an InputError with the nearest word.
+// Values of the case file given on the command line, `--set /json/pointer=value`. They replace what the file says
+// before anything is read, so that they are checked as if they stood in it. What a setting can do: give a key of an
+// object that is there, or an element of a list that is there. A misspelt way to it is an InputError with the nearest
+// word.
 #pragma once
 
 #include <filesystem>

@@ -12,7 +12,8 @@ using doctest::Contains;
 
 namespace {
 
-const char* const case_text = R"({"newmark": {"gamma": 0.7} /* why */, "rules": [{"factor": 1}, {"factor": 2}], "title": "t"})";
+const char* const case_text =
+    R"({"newmark": {"gamma": 0.7} /* why */, "rules": [{"factor": 1}, {"factor": 2}], "title": "t"})";
 
 nlohmann::ordered_json with(const std::vector<std::string>& texts) {
   std::vector<CaseSetting> settings;
