@@ -12,6 +12,7 @@
 #include <fstream>
 #include <new>
 
+#include "common/case_settings.hpp"
 #include "common/error.hpp"
 #include "common/patient_threads.hpp"
 #include "common/output_place.hpp"
@@ -60,6 +61,14 @@ void add_common_options(CLI::App& app) {
          "OpenMP threads (default: OMP_NUM_THREADS, else as many of the cores as the scene keeps busy); the results do not "
          "depend on it")
       ->check(CLI::Range(1, 1024));
+  // One value for each --set: what follows is an argument of the command again.
+  app.add_option_function<std::vector<std::string>>(
+         "--set", [](const std::vector<std::string>& texts) { use_settings(texts); },
+         "/json/pointer=value: this value in place of the case file's (may be repeated)")
+      ->type_name("SETTING")
+      ->type_size(1)
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.fallthrough();
 }
 
@@ -71,6 +80,9 @@ int run_application(CLI::App& app, int argc, char** argv) {
     return app.exit(error) == 0 ? exit_done : exit_bad_input;
   } catch (const InputError& error) {
     spdlog::error("{}: {}", app.get_name(), error.what());
+    // Not every message knows where a value came from.
+    if (std::string(error.what()).find("--set") == std::string::npos && !settings_in_use().empty())
+      spdlog::error("{}: the case file was read with{}", app.get_name(), settings_as_options());
     return exit_bad_input;
   } catch (const InterruptedError& error) {
     spdlog::error("{}: {}", app.get_name(), error.what());

@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "common/case_settings.hpp"
 #include "common/error.hpp"
 #include "common/json_text.hpp"
 #include "common/warnings.hpp"
@@ -32,9 +33,13 @@ struct CaseFile::State {
   std::filesystem::path path;
   std::string text;
   Json json;
+  std::vector<CaseSetting> settings;
   std::map<std::string, std::set<std::string>> known;  // by pointer of the object
   std::map<std::string, const Json*> visited;          // objects that somebody read
   std::vector<std::string> echo;
+
+  // Behind a pointer in messages: that its value is not the file's own.
+  std::string origin(const std::string& pointer) const { return is_set(pointer, settings) ? " (from --set)" : ""; }
 };
 
 namespace {
@@ -65,6 +70,10 @@ CaseFile::CaseFile(const std::filesystem::path& path) : state_(std::make_shared<
   if (!state_->json.is_object())
     throw InputError(
         fmt::format("{}: the case file must be a JSON object, found {}", path.string(), kind(state_->json)));
+  state_->settings = settings_in_use();
+  if (state_->settings.empty()) return;
+  apply_settings(state_->json, state_->settings, path);
+  state_->text = effective_text(state_->json, state_->settings);
 }
 
 CaseFile::~CaseFile() = default;
@@ -88,11 +97,12 @@ void CaseFile::finish() const {
     const auto& known = state_->known[pointer];
     for (const auto& [key, value] : object->items()) {
       if (known.contains(key)) continue;
-      std::vector<std::string> unused;
+      const std::string origin = state_->origin(child(pointer, key));
+      std::vector<std::string> unused;  // in the file; a setting may well be meant to replace what is there
       for (const auto& candidate : known)
-        if (!object->contains(candidate)) unused.push_back(candidate);
-      throw InputError(fmt::format("{}: {}: unknown key '{}'.{} Allowed here: {}", state_->path.string(),
-                                   child(pointer, key), key, did_you_mean(key, unused),
+        if (!origin.empty() || !object->contains(candidate)) unused.push_back(candidate);
+      throw InputError(fmt::format("{}: {}{}: unknown key '{}'.{} Allowed here: {}", state_->path.string(),
+                                   child(pointer, key), origin, key, did_you_mean(key, unused),
                                    joined({known.begin(), known.end()})));
     }
   }
@@ -104,12 +114,14 @@ CaseNode::CaseNode(std::shared_ptr<CaseFile::State> state, const Json* json, std
 }
 
 void CaseNode::fail(const std::string& key, const std::string& message) const {
-  throw InputError(fmt::format("{}: {}: {}", state_->path.string(),
-                               key.empty() ? (pointer_.empty() ? "/" : pointer_) : child(pointer_, key), message));
+  const std::string place = key.empty() ? pointer_ : child(pointer_, key);
+  throw InputError(fmt::format("{}: {}{}: {}", state_->path.string(), place.empty() ? "/" : place,
+                               state_->origin(place), message));
 }
 
 void CaseNode::warn(const std::string& key, const std::string& message) const {
-  add_warning(fmt::format("{}: {}: {}", state_->path.string(), child(pointer_, key), message));
+  const std::string place = child(pointer_, key);
+  add_warning(fmt::format("{}: {}{}: {}", state_->path.string(), place, state_->origin(place), message));
 }
 
 std::optional<double> CaseNode::peek(const std::string& key) const {
@@ -139,9 +151,11 @@ const Json& CaseNode::require(const std::string& key, std::string_view wanted) c
 }
 
 void CaseNode::record(const std::string& key, const std::string& value, std::string_view unit, bool is_default) const {
-  state_->echo.push_back(fmt::format("{} = {}{}{}", child(pointer_, key).substr(1), value,
+  const std::string place = child(pointer_, key);
+  const std::string origin = state_->origin(place);
+  state_->echo.push_back(fmt::format("{} = {}{}{}", place.substr(1), value,
                                      unit.empty() || unit == "1" ? "" : fmt::format(" {}", unit),
-                                     is_default ? "  (default)" : ""));
+                                     is_default ? "  (default)" : origin.empty() ? "" : " " + origin));
 }
 
 double CaseNode::checked(const std::string& key, const Json& value, std::string_view unit, Range range) const {

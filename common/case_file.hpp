@@ -50,7 +50,7 @@ class CaseFile {
 
   CaseNode root() const;
   const std::filesystem::path& path() const;
-  const std::string& text() const;        // the file as read, for provenance
+  const std::string& text() const;        // the file as read, with --set's values
   void finish() const;                    // throws InputError on the first key that nobody asked for
   std::vector<std::string> echo() const;  // every option read: pointer, value, unit, and whether it is the default
 

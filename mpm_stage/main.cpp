@@ -8,6 +8,7 @@
 //
 //   mpm_stage run cases/mochikoshi/mpm.json -o out/mochikoshi/mpm --particles out/mochikoshi/particles.h5
 //   mpm_stage run cases/verification/mu_block/mpm.json -o out/mu_block
+//   mpm_stage run ... --set /time/end=20                  this value in place of the case file's
 //   mpm_stage run ... --resume                            goes on from the folder's checkpoint, bit for bit
 //
 // The folder given with -o gets frames/ (particles files for ParaView and an index), front.csv, ledger.csv and
@@ -16,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "common/application.hpp"
+#include "common/case_settings.hpp"
 #include "common/output_place.hpp"
 #include "common/patient_threads.hpp"
 #include "mpm_stage/run/interrupt.hpp"
@@ -59,7 +61,7 @@ int main(int argc, char** argv) {
     control.resume_command = fmt::format("mpm_stage run {} -o {}", case_path.string(), output.string());
     if (!particles.empty()) control.resume_command += " --particles " + particles.string();
     if (!size.empty()) control.resume_command += " --size " + size;
-    control.resume_command += " --resume";
+    control.resume_command += settings_as_options() + " --resume";
     control.interruption = [](long) { return noted_signal(); };
     note_signals();
     limit_threads(scene.particles.count(), particles_per_thread);

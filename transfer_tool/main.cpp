@@ -17,6 +17,7 @@
 #include <filesystem>
 
 #include "common/application.hpp"
+#include "common/case_settings.hpp"
 #include "common/error.hpp"
 #include "common/output_place.hpp"
 #include "common/patient_threads.hpp"
@@ -143,6 +144,7 @@ int main(int argc, char** argv) {
   info_command->add_option("file", info_path, "Snapshot, particles, frame, geostatic or checkpoint file")->required();
   info_command->add_flag("--json", as_json, "For machines");
   info_command->callback([&] {
+    if (!settings_in_use().empty()) throw InputError("--set: info reads no case file that it could change");
     const FileReport report = read_file_report(info_path);
     fmt::print("{}", as_json ? report_json(report).dump(1) + "\n" : report_text(report));
   });

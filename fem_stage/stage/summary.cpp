@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/case_settings.hpp"
 #include "common/provenance.hpp"
 #include "common/warnings.hpp"
 
@@ -40,6 +41,7 @@ Json consolidation_summary(const ConsolidationReport& report) {
   Json out;
   out["program"] = "fem_stage";
   out["version"] = version();
+  if (!settings_in_use().empty()) out["settings"] = texts_of_settings();
   out["finished"] = report.failure.empty();
   if (!report.failure.empty()) out["failure"] = report.failure;
   out["start_time_s"] = report.start_time;
@@ -64,6 +66,7 @@ Json shake_summary(const Model& model, const Motion& motion, const ShakeReport& 
   Json out;
   out["program"] = "fem_stage";
   out["version"] = version();
+  if (!settings_in_use().empty()) out["settings"] = texts_of_settings();
   out["finished"] = report.failure.empty();
   if (!report.failure.empty()) out["failure"] = report.failure;
   out["end_time_s"] = report.end_time;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/case_settings.hpp"
 #include "common/provenance.hpp"
 #include "common/warnings.hpp"
 #include "mpm_stage/boundary/soil_limit.hpp"
@@ -105,6 +106,7 @@ Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& reco
   Json j;
   j["title"] = scene.title;
   j["version"] = version();
+  if (!settings_in_use().empty()) j["settings"] = texts_of_settings();
   j["particles"] = solver.particles().count();
   j["particles_removed"] = solver.removed().size();
   j["removed_identities"] = solver.removed();

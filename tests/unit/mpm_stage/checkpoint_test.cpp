@@ -10,6 +10,7 @@
 #include <functional>
 #include <sstream>
 
+#include "common/case_settings.hpp"
 #include "common/error.hpp"
 #include "mpm_stage/run/runout.hpp"
 
@@ -119,6 +120,39 @@ TEST_CASE("a run does not go on with another case file, nor without a checkpoint
   other.replace(other.find("\"friction\": 0.3"), 15, "\"friction\": 0.4");
   CHECK_THROWS_WITH_AS(run(folder, "out", true, 0, other), doctest::Contains("mpm.json"), InputError);
   CHECK(std::filesystem::exists(folder / "out/checkpoint.h5"));
+}
+
+TEST_CASE("a run goes on with a case file that differs in comments and spaces only") {
+  const Folder folder("comments");
+  CHECK_THROWS_AS(run(folder, "out", false, 5), ComputationError);
+  CHECK_THROWS_WITH_AS(run(folder, "out", true, 9, "// why\n  " + std::string(case_text)),
+                       doctest::Contains("run again"), ComputationError);
+}
+
+namespace {
+
+void run_with(const std::vector<std::string>& settings, const Folder& folder, bool resume, long stop,
+              const std::string& text = case_text) {
+  struct TakeBack {
+    ~TakeBack() { use_settings({}); }
+  } at_the_end;
+  use_settings(settings);
+  run(folder, "out", resume, stop, text);
+}
+
+}  // namespace
+
+TEST_CASE("a run goes on with the settings that it began with, or a case file that says the same, and no others") {
+  const Folder folder("settings");
+  const std::string pointer = "/time/end=";
+  CHECK_THROWS_WITH_AS(run_with({pointer + "50"}, folder, false, 5), doctest::Contains("run again"), ComputationError);
+  CHECK_THROWS_WITH_AS(run(folder, "out", true, 9), doctest::Contains("--set"), InputError);
+  CHECK_THROWS_WITH_AS(run_with({pointer + "51"}, folder, true, 9), doctest::Contains("first at /time/end"), InputError);
+  CHECK_THROWS_WITH_AS(run_with({pointer + "50"}, folder, true, 9), doctest::Contains("run again"), ComputationError);
+  std::string other = case_text;
+  const std::size_t end = other.find("\"end\": ") + 7;
+  other.replace(end, other.find_first_of(",}", end) - end, "50");
+  CHECK_THROWS_WITH_AS(run(folder, "out", true, 12, other), doctest::Contains("run again"), ComputationError);
 }
 
 TEST_CASE("a cut-off checkpoint is refused") {
