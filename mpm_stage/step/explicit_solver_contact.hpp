@@ -9,23 +9,23 @@ namespace tailrun::mpm {
 // The ground's friction on the nodes' velocities.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_ground(const Drive& drive) {
-  for (int f = 0; f < fields_.count(); ++f) {
-    NodeGrip* grip = grip_.data() + node_of(f, 0);
-    Spread* spread = spread_.data() + node_of(f, 0);
+  // Each loop takes all fields: threads meet once after it.
+  const auto for_each_block = [this](auto action) {
 #pragma omp parallel for schedule(dynamic, 4)
     for (std::size_t a = 0; a < grid_.active(); ++a)
-      if (ground_.of_block(a) && fields_.present(f, a))
-        for (std::size_t k = a * block_nodes; k < (a + 1) * block_nodes; ++k)
-          if (grip[k].mass > 0.0)
-            grip[k].sliding = grip[k].mass * std::sqrt(square<Dim>(sliding_of<Dim>(grip[k], velocity_at(node_of(f, 0) + k))));
-#pragma omp parallel for schedule(dynamic, 4)
-    for (std::size_t a = 0; a < grid_.active(); ++a)
-      if (ground_.of_block(a) && fields_.present(f, a))
-        for (int n = 0; n < block_nodes; ++n) spread[a * block_nodes + n] = spread_of(ground_, grip, a, n);
-#pragma omp parallel for schedule(dynamic, 4)
-    for (std::size_t a = 0; a < grid_.active(); ++a)
-      if (ground_.of_block(a) && fields_.present(f, a)) rub_block(f, a, drive);
-  }
+      for (int f = 0; ground_.of_block(a) && f < fields_.count(); ++f)
+        if (fields_.present(f, a)) action(f, a);
+  };
+  for_each_block([this](int f, std::size_t a) {
+    for (std::size_t k = node_of(f, a); k < node_of(f, a) + block_nodes; ++k)
+      if (grip_[k].mass > 0.0)
+        grip_[k].sliding = grip_[k].mass * std::sqrt(square<Dim>(sliding_of<Dim>(grip_[k], velocity_at(k))));
+  });
+  for_each_block([this](int f, std::size_t a) {
+    for (int n = 0; n < block_nodes; ++n)
+      spread_[node_of(f, a) + static_cast<std::size_t>(n)] = spread_of(ground_, grip_.data() + node_of(f, 0), a, n);
+  });
+  for_each_block([this, &drive](int f, std::size_t a) { rub_block(f, a, drive); });
 }
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
