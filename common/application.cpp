@@ -14,8 +14,8 @@
 
 #include "common/case_settings.hpp"
 #include "common/error.hpp"
-#include "common/patient_threads.hpp"
 #include "common/output_place.hpp"
+#include "common/patient_threads.hpp"
 #include "common/provenance.hpp"
 
 namespace tailrun {
@@ -58,7 +58,8 @@ void add_common_options(CLI::App& app) {
       "--verbose", [] { spdlog::set_level(spdlog::level::debug); }, "Say more: steps that were cut, and why");
   app.add_option_function<int>(
          "--threads", [](int count) { set_threads(count); },
-         "OpenMP threads (default: OMP_NUM_THREADS, else as many of the cores as the scene keeps busy); the results do not "
+         "OpenMP threads (default: OMP_NUM_THREADS, else as many of the cores as the scene keeps busy); the results do "
+         "not "
          "depend on it")
       ->check(CLI::Range(1, 1024));
   // One value for each --set: what follows is an argument of the command again.

@@ -115,8 +115,8 @@ CaseNode::CaseNode(std::shared_ptr<CaseFile::State> state, const Json* json, std
 
 void CaseNode::fail(const std::string& key, const std::string& message) const {
   const std::string place = key.empty() ? pointer_ : child(pointer_, key);
-  throw InputError(fmt::format("{}: {}{}: {}", state_->path.string(), place.empty() ? "/" : place,
-                               state_->origin(place), message));
+  throw InputError(
+      fmt::format("{}: {}{}: {}", state_->path.string(), place.empty() ? "/" : place, state_->origin(place), message));
 }
 
 void CaseNode::warn(const std::string& key, const std::string& message) const {
@@ -155,7 +155,9 @@ void CaseNode::record(const std::string& key, const std::string& value, std::str
   const std::string origin = state_->origin(place);
   state_->echo.push_back(fmt::format("{} = {}{}{}", place.substr(1), value,
                                      unit.empty() || unit == "1" ? "" : fmt::format(" {}", unit),
-                                     is_default ? "  (default)" : origin.empty() ? "" : " " + origin));
+                                     is_default       ? "  (default)"
+                                     : origin.empty() ? ""
+                                                      : " " + origin));
 }
 
 double CaseNode::checked(const std::string& key, const Json& value, std::string_view unit, Range range) const {

@@ -67,10 +67,11 @@ ElementTestCase read_element_test(const std::filesystem::path& case_file) {
     test.stop_strain =
         stop.number_or(compression ? "axial_strain" : "shear_strain", "1", Range::positive(), test.stop_strain);
     if (!(test.stop_strain / test.strain_increment <= most_increments))
-      loading.fail(key, fmt::format("found {:g}, which makes {:.3g} increments to a strain of {:g}, but at most {:g} are "
-                                    "allowed",
-                                    test.strain_increment, test.stop_strain / test.strain_increment, test.stop_strain,
-                                    most_increments));
+      loading.fail(key,
+                   fmt::format("found {:g}, which makes {:.3g} increments to a strain of {:g}, but at most {:g} are "
+                               "allowed",
+                               test.strain_increment, test.stop_strain / test.strain_increment, test.stop_strain,
+                               most_increments));
   }
   if (test.type == ElementTestType::cyclic_simple_shear) {
     test.csr = loading.number("csr", "1", Range::positive());

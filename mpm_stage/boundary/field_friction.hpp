@@ -27,11 +27,11 @@ double along(const std::array<double, Dim>& a, const std::array<double, Dim>& b)
 // Of two bodies at a node; masses 0: they do not touch.
 template <int Dim>
 struct FieldGrip {
-  std::array<double, 2> mass{};           // kg
-  std::array<std::uint8_t, 2> fields{};   // of either body, as bits
-  std::array<double, Dim> normal{};       // from the first to the second
-  double friction = 0.0, carried = 0.0;   // N s: Coulomb's, and what the weaker soil carries
-  double sliding = 0.0;                   // N s, the momentum that stopping would take
+  std::array<double, 2> mass{};          // kg
+  std::array<std::uint8_t, 2> fields{};  // of either body, as bits
+  std::array<double, Dim> normal{};      // from the first to the second
+  double friction = 0.0, carried = 0.0;  // N s: Coulomb's, and what the weaker soil carries
+  double sliding = 0.0;                  // N s, the momentum that stopping would take
 
   bool any() const { return mass[0] > 0.0; }
   double reduced_mass() const { return mass[0] * mass[1] / (mass[0] + mass[1]); }
@@ -52,8 +52,12 @@ struct FieldGrip {
 };
 
 // Number of a pair of fields, i < j, among those of `count` fields.
-constexpr int pair_of(int i, int j, int count) { return i * (2 * count - i - 1) / 2 + j - i - 1; }
-constexpr int pairs_of(int count) { return count * (count - 1) / 2; }
+constexpr int pair_of(int i, int j, int count) {
+  return i * (2 * count - i - 1) / 2 + j - i - 1;
+}
+constexpr int pairs_of(int count) {
+  return count * (count - 1) / 2;
+}
 
 // m/s, the part of u across the normal.
 template <int Dim>

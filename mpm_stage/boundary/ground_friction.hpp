@@ -128,8 +128,8 @@ struct Spread {
   double friction = 0.0, carried = 0.0;
 };
 
-// Those of node n: its own over the sliding momenta in contact around it. `grip` and `spread` are one velocity field's, by
-// active blocks.
+// Those of node n: its own over the sliding momenta in contact around it. `grip` and `spread` are one velocity field's,
+// by active blocks.
 template <int Dim>
 inline Spread spread_of(const ContactNodes<Dim>& ground, const NodeGrip* grip, std::size_t a, int n) {
   const NodeGrip& own = grip[a * Block<Dim>::nodes + n];

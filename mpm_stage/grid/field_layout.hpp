@@ -65,7 +65,8 @@ class FieldLayout {
     for (std::size_t s = 0; s < shared_.size(); ++s)
       for (int k = 0; k < Block<Dim>::neighbours; ++k) {
         const int other = grid.active_beside(shared_[s], k);
-        shared_around_[s][static_cast<std::size_t>(k)] = other < 0 ? -1 : shared_number_[static_cast<std::size_t>(other)];
+        shared_around_[s][static_cast<std::size_t>(k)] =
+            other < 0 ? -1 : shared_number_[static_cast<std::size_t>(other)];
       }
     near_shared_.assign(grid.occupied(), 0);
     for (std::size_t b = 0; b < grid.occupied(); ++b)

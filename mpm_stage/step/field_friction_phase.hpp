@@ -35,8 +35,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_fields(double dt) {
         const double fast = std::sqrt(std::max(square<Dim>(u), square<Dim>(other)));
         for (int d = 0; d < Dim; ++d) u[d] -= other[d];
         grip[n].sliding = grip[n].reduced_mass() * std::sqrt(square<Dim>(sliding_of<Dim>(grip[n], u)));
-        if (smoothed)
-          grip[n].smooth(dt, smoothing_share(dt * h1_ * fastest_wave_, dt * h1_ * fast), smoothed[n]);
+        if (smoothed) grip[n].smooth(dt, smoothing_share(dt * h1_ * fastest_wave_, dt * h1_ * fast), smoothed[n]);
       }
     }
 #pragma omp parallel for schedule(dynamic, 4)
@@ -74,8 +73,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_fields_of(std::size_t s) {
       sums.contact += impulse * std::max(0.0, speed - impulse / reduced);
       for (int side = 0; side < 2; ++side) {
         std::array<double, Dim> dv;
-        for (int d = 0; d < Dim; ++d)
-          dv[d] = (side == 0 ? -impulse : impulse) / grip[n].mass[side] * slide[d] / speed;
+        for (int d = 0; d < Dim; ++d) dv[d] = (side == 0 ? -impulse : impulse) / grip[n].mass[side] * slide[d] / speed;
         brake_body(grip[n].fields[side], a, n, grip[n].mass[side], dv, sums);
       }
     }

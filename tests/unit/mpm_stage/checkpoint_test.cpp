@@ -147,7 +147,8 @@ TEST_CASE("a run goes on with the settings that it began with, or a case file th
   const std::string pointer = "/time/end=";
   CHECK_THROWS_WITH_AS(run_with({pointer + "50"}, folder, false, 5), doctest::Contains("run again"), ComputationError);
   CHECK_THROWS_WITH_AS(run(folder, "out", true, 9), doctest::Contains("--set"), InputError);
-  CHECK_THROWS_WITH_AS(run_with({pointer + "51"}, folder, true, 9), doctest::Contains("first at /time/end"), InputError);
+  CHECK_THROWS_WITH_AS(run_with({pointer + "51"}, folder, true, 9), doctest::Contains("first at /time/end"),
+                       InputError);
   CHECK_THROWS_WITH_AS(run_with({pointer + "50"}, folder, true, 9), doctest::Contains("run again"), ComputationError);
   std::string other = case_text;
   const std::size_t end = other.find("\"end\": ") + 7;
