@@ -123,7 +123,11 @@ class ContactPair {
     // Soil that flows opens and crowds, and its centre with it: soil that does not shows the surface better, of two
     // such bodies the one whose surface is the plainer (a corner of the other is none).
     const bool of_i = i.firm && (!j.firm || i.plainness() >= j.plainness());
-    if (i.firm || j.firm) take_normal_of(of_i ? i.outward : j.outward, of_i ? 1.0 : -1.0);
+    // Beside soil that flows, firm layers are often thinner than the nodes around reach, which would tilt them.
+    if (i.firm && j.firm)
+      take_normal_of(of_i ? i.outward : j.outward, of_i ? 1.0 : -1.0);
+    else if (i.firm || j.firm)
+      take_normal_of(of_i ? i.surface : j.surface, of_i ? 1.0 : -1.0);
     // Inside soil that flows, the node's velocity differs from that of the surface by what the soil strains in between;
     // what is there of the firm body is the rim of its reach, and must not be taken along.
     if (i.firm != j.firm) presses_ = std::fabs(along<Dim>(i.firm ? i.centre : j.centre, n_)) <= rim * h;

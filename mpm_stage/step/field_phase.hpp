@@ -55,9 +55,10 @@ typename ExplicitSolver<Dim, Shape, Split, Transfer>::NodeBodies ExplicitSolver<
   for (int f = 0; f < fields_.count(); ++f) {
     if (!(there >> f & 1U)) continue;
     BodyAtNode<Dim>& body = bodies.body[bodies.count];
-    const bool firm = options_.fields.firm(f);  // only of such bodies does contact ask where the surface faces
+    const bool firm = options_.fields.firm(f);
+    // With sides no two firm bodies meet, and of others contact does not ask.
     body = body_at_node<Dim>(node[f].sum[n][0], interfaces_[interface_of(f, a) + static_cast<std::size_t>(n)],
-                             firm ? surface_around(f, a, n) : SurfaceAround<Dim>{});
+                             firm && !options_.fields.by_side ? surface_around(f, a, n) : SurfaceAround<Dim>{});
     body.firm = firm;
     set_motion(node_of(f, a) + static_cast<std::size_t>(n), body);
     bodies.of_field[f] = bodies.count++;
@@ -131,7 +132,7 @@ SurfaceAround<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::surface_around(i
       surface.outward[d] += weight * face;
       square += face * face;
     }
-    if (!options_.fields.by_side) surface.faces += weight * std::sqrt(square);  // with sides no two firm bodies meet
+    surface.faces += weight * std::sqrt(square);
   }
   return surface;
 }
