@@ -3,12 +3,8 @@
 // What a node may lose along the ground is friction times its normal impulse. Nodes just under the ground have little
 // mass but gradients as large as any, so their share of the normal impulses exceeds their share of the momentum: taken
 // node by node, slow sliding would stop them altogether and waste the rest of their friction, and a block would creep
-// down a slope that should hold it. So the capacity that nodes have is pooled: each node's friction impulse is spread
-// over the nodes in contact around it (a cell in every direction) in proportion to the momentum that each has along the
-// ground: all lose the same share of it, and what a node does not need to stop serves those that still slide. Spread by
-// mass, slow sliding stopped the heavy nodes alone, wasted the rest of their share, and phi = 0 slopes with a factor of
-// safety of 1.2 crept for ever. The sum is untouched.
-// What the soil can carry (soil_limit.hpp) is pooled alike, and the less of both counts.
+// down a slope that should hold it. So nodes share what they have (friction_pool.hpp).
+// What the soil can carry (soil_limit.hpp) is shared alike, and the less of both counts.
 #pragma once
 
 #include <algorithm>
@@ -16,17 +12,20 @@
 #include <cmath>
 
 #include "mpm_stage/boundary/contact_gap.hpp"
+#include "mpm_stage/boundary/friction_pool.hpp"
 
 namespace tailrun::mpm {
 
 // State of a node after the normal part of contact. mass 0: not in contact.
 struct NodeGrip {
   double mass = 0.0;      // kg
-  double capacity = 0.0;  // N s, friction coefficient times normal impulse
+  double friction = 0.0;  // N s, friction coefficient times normal impulse
   std::array<double, 2> normal{};
   double carried = 0.0;  // N s, what the soil can carry
   double sliding = 0.0;  // N s, momentum along the ground before friction
   bool pushed = false;   // in this step the ground has stopped an approach
+
+  bool any() const { return mass > 0.0; }
 };
 
 // The push of the ground as friction sees it. A stiff body at rest rings, and its normal impulse with it; friction that
@@ -55,15 +54,14 @@ inline double sliding_speed(const NodeContact& contact, const std::array<double,
 }
 
 // `smoothed` (m/s2, friction coefficient times normal impulse over mass and time) is the node's memory, 0 without one.
-// Sets the capacity of the grip; a node that the ground has just let go of still grips with what it remembers.
+// Sets the friction of the grip; a node that the ground has just let go of still grips with what it remembers.
 inline void smooth_grip(const NodeContact& contact, double mass, double dt, double share, double& smoothed,
                         NodeGrip& grip) {
-  const double now = grip.capacity / (mass * dt);
-  smoothed = smoothed > 0.0 ? smoothed + share * (now - smoothed) : now;
+  remembered(grip.friction / (mass * dt), share, smoothed);
   if (grip.mass == 0.0 && (contact.count != 1 || contact.adhere || smoothed <= 0.0)) return;
   if (grip.mass == 0.0) grip.normal = contact.point[0].normal;
   grip.mass = mass;
-  grip.capacity = smoothed * mass * dt;
+  grip.friction = smoothed * mass * dt;
 }
 
 // N s, what the soil at a node carries in a step on the part of the ground's surface (m, m2) that is the node's.
@@ -93,7 +91,7 @@ inline NodeGrip stop_approach(const NodeContact& contact, double mass, double al
       v[1] += approach * n[1];
       grip.mass = mass;
       grip.pushed = true;
-      grip.capacity += contact.point[k].friction * mass * approach;
+      grip.friction += contact.point[k].friction * mass * approach;
       grip.normal = n;
     }
   return grip;
@@ -121,39 +119,6 @@ inline double apply_friction(const NodeGrip& grip, double impulse, std::array<do
   const double taken = sliding > 0.0 ? 1.0 - left / sliding : 0.0;
   for (int d = 0; d < Dim; ++d) v[d] -= taken * t[d];
   return grip.mass * (sliding - left) * left;
-}
-
-// Impulses that a node spreads over the momentum to be stopped around it, 1.
-struct Spread {
-  double friction = 0.0, carried = 0.0;
-};
-
-// Those of node n: its own over the sliding momenta in contact around it. `grip` and `spread` are one velocity field's,
-// by active blocks.
-template <int Dim>
-inline Spread spread_of(const ContactNodes<Dim>& ground, const NodeGrip* grip, std::size_t a, int n) {
-  const NodeGrip& own = grip[a * Block<Dim>::nodes + n];
-  if (own.mass <= 0.0) return {};
-  double sliding = 0.0;
-  for (int s = 0; s < Block<Dim>::neighbours; ++s) {
-    const auto k = node_beside<Dim>(ground.contact_around(a), n, neighbour_step<Dim>(s));
-    if (k >= 0) sliding += grip[static_cast<std::size_t>(k)].sliding;
-  }
-  return sliding > 0.0 ? Spread{own.capacity / sliding, own.carried / sliding} : Spread{};
-}
-
-// Friction impulse (N s) of node n from the spreads around it.
-template <int Dim>
-inline double pooled_impulse(const ContactNodes<Dim>& ground, const NodeGrip* grip, const Spread* spread, std::size_t a,
-                             int n) {
-  Spread sum;
-  for (int s = 0; s < Block<Dim>::neighbours; ++s) {
-    const auto k = node_beside<Dim>(ground.contact_around(a), n, neighbour_step<Dim>(s));
-    if (k < 0) continue;
-    sum.friction += spread[static_cast<std::size_t>(k)].friction;
-    sum.carried += spread[static_cast<std::size_t>(k)].carried;
-  }
-  return std::min(sum.friction, sum.carried) * grip[a * Block<Dim>::nodes + n].sliding;
 }
 
 }  // namespace tailrun::mpm

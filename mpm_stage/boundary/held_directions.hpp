@@ -67,7 +67,7 @@ void hold_by_ground(const NodeContact& contact, const NodeGrip& grip, double all
   for (int d = 0; d < Dim; ++d) still = still && std::fabs(v[d]) <= slack;
   if (contact.adhere && still) {
     held.hold_all();
-  } else if (grip.mass > 0.0 && grip.capacity > 0.0) {
+  } else if (grip.mass > 0.0 && grip.friction > 0.0) {
     const double vn = v[0] * grip.normal[0] + v[1] * grip.normal[1];
     for (int d = 0; d < Dim; ++d)
       if (std::fabs(v[d] - (d < 2 ? vn * grip.normal[d] : 0.0)) > slack) return;
@@ -88,7 +88,7 @@ std::array<double, Dim> along_ground(const NodeGrip& grip, std::array<double, Di
 // `before` and must not turn it round.
 template <int Dim>
 void stop_return(const NodeGrip& grip, const std::array<double, Dim>& before, std::array<double, Dim>& v) {
-  if (grip.mass <= 0.0 || grip.capacity <= 0.0) return;
+  if (grip.mass <= 0.0 || grip.friction <= 0.0) return;
   const auto slid = along_ground<Dim>(grip, before), slides = along_ground<Dim>(grip, v);
   double together = 0.0;
   for (int d = 0; d < Dim; ++d) together += slid[d] * slides[d];

@@ -353,7 +353,7 @@ class ExplicitSolver final : public Solver<Dim> {
   HalfSpaces<Shape> half_spaces_;
   // Per pair of fields and per block that several fields reach.
   std::vector<FieldGrip<Dim>> field_grip_;
-  std::vector<FieldSpread> field_spread_;
+  std::vector<Spread> field_spread_;
   std::vector<double> smoothed_push_;            // m/s2, only with Coulomb's friction between fields
   std::vector<std::array<double, Dim>> damped_;  // N s, taken by local damping in this step; per active block
   AlignedVector<PatchSum> averaged_tiles_;

@@ -23,14 +23,14 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_ground(const Drive& drive)
   });
   for_each_block([this](int f, std::size_t a) {
     for (int n = 0; n < block_nodes; ++n)
-      spread_[node_of(f, a) + static_cast<std::size_t>(n)] = spread_of(ground_, grip_.data() + node_of(f, 0), a, n);
+      spread_[node_of(f, a) + static_cast<std::size_t>(n)] =
+          spread_of<Dim>(ground_.contact_around(a), grip_.data() + node_of(f, 0), a, n);
   });
   for_each_block([this, &drive](int f, std::size_t a) { rub_block(f, a, drive); });
 }
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_block(int f, std::size_t a, const Drive& drive) {
-  const NodeGrip* grip = grip_.data() + node_of(f, 0);
   const Spread* spread = spread_.data() + node_of(f, 0);
   GridSums<Dim>& sums = grid_sums_[a];
   for (int n = 0; n < block_nodes; ++n) {
@@ -39,7 +39,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_block(int f, std::size_t a
     if (own.mass <= 0.0) continue;
     std::array<double, Dim> v, lost{};
     for (int d = 0; d < Dim; ++d) v[d] = lost[d] = velocity_[k][d];
-    sums.friction += apply_friction<Dim>(own, pooled_impulse(ground_, grip, spread, a, n), v);
+    sums.friction += apply_friction<Dim>(own, pooled_impulse<Dim>(ground_.contact_around(a), own, spread, n), v);
     for (int d = 0; d < Dim; ++d) {
       lost[d] = v[d] - lost[d];
       sums.impulse[d] += own.mass * lost[d];

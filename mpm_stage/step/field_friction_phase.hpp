@@ -57,7 +57,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_fields_of(std::size_t s) {
   GridSums<Dim>& sums = grid_sums_[a];
   for (int pair = 0; pair < pairs_of(fields_.count()); ++pair) {
     const FieldGrip<Dim>* grip = field_grip_.data() + grip_of(pair, a);
-    const FieldSpread* spread = field_spread_.data() + grip_of(pair, fields_.shared_blocks()[0]);
+    const Spread* spread = field_spread_.data() + grip_of(pair, fields_.shared_blocks()[0]);
     for (int n = 0; n < block_nodes; ++n) {
       if (!grip[n].any()) continue;
       const auto k = static_cast<std::size_t>(n);

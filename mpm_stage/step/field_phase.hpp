@@ -121,17 +121,17 @@ SurfaceAround<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::surface_around(i
   const auto& around = fields_.shared_around(static_cast<std::size_t>(fields_.shared_number(a)));
   const InterfaceNode* nodes = interfaces_.data() + interface_of(f, fields_.shared_blocks()[0]);
   SurfaceAround<Dim> surface;
-  for (int k = 0; k < Block<Dim>::neighbours; ++k) {
-    const auto step = neighbour_step<Dim>(k);
-    const auto at = node_beside<Dim>(around, n, step);
-    if (at < 0) continue;
+  for (int s = 0; s < Block<Dim>::neighbours; ++s) {
+    const auto step = neighbour_step<Dim>(s);
+    const auto k = node_beside<Dim>(around, n, step);
+    if (k < 0) continue;
     double weight = 1.0, square = 0.0;
-    for (int d = 0; d < Dim; ++d) weight *= step[d] == 0 ? 2.0 : 1.0;
     for (int d = 0; d < Dim; ++d) {
-      const double face = nodes[at].second[1 + d];
-      surface.outward[d] += weight * face;
+      const double face = nodes[k].second[1 + d];
       square += face * face;
+      weight *= step[d] == 0 ? 2.0 : 1.0;
     }
+    for (int d = 0; d < Dim; ++d) surface.outward[d] += weight * nodes[k].second[1 + d];
     surface.faces += weight * std::sqrt(square);
   }
   return surface;
@@ -236,7 +236,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::settle_on_ground(std::size_t a
     NodeBodies bodies = bodies_at(a, n, there, node);
     if (bodies.count < 2) continue;
     std::array<bool, most_fields> rests{};
-    std::array<double, most_fields> capacity{};
+    std::array<double, most_fields> friction{};
     for (int f = 0; f < fields_.count(); ++f)
       if (bodies.of_field[f] >= 0 && grip_[node_of(f, a) + static_cast<std::size_t>(n)].pushed)
         rests[bodies.of_field[f]] = true;
@@ -248,14 +248,14 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::settle_on_ground(std::size_t a
       if (change <= 0.0) break;
       for (int b = 0; b < bodies.count; ++b)
         if (rests[b])
-          capacity[b] += stop_approach<Dim>(contact[n], bodies.body[b].mass, 0.0, bodies.body[b].v).capacity;
+          friction[b] += stop_approach<Dim>(contact[n], bodies.body[b].mass, 0.0, bodies.body[b].v).friction;
     }
     for (int f = 0; f < fields_.count(); ++f) {
       const int b = bodies.of_field[f];
       if (b < 0) continue;
       NodeGrip& grip = grip_[node_of(f, a) + static_cast<std::size_t>(n)];
       const double m = node[f].sum[n][0];
-      if (grip.pushed) grip.capacity += capacity[b] * m / bodies.body[b].mass;
+      if (grip.pushed) grip.friction += friction[b] * m / bodies.body[b].mass;
       for (int d = 0; d < Dim; ++d) sums.impulse[d] += m * (bodies.body[b].v[d] - free.body[b].v[d]);
     }
     keep_grips(a, n, bodies, pairs);

@@ -188,7 +188,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::touch_boundaries(int f, std::s
       grip = stop_approach<Dim>(contact[n], m, std::max(0.0, gap[n].value) / dt, v);
       const double share = smoothing_share(dt * h1_ * fastest_wave_, dt * h1_ * sliding_speed<Dim>(contact[n], v));
       smooth_grip(contact[n], m, dt, share, smoothed_grip_[k], grip);
-      grip.carried = grip.capacity;
+      grip.carried = grip.friction;
       if (options_.soil_limits_friction)
         grip.carried = carried_by_soil(
             gap[n], ground_.surfaces(a)[n] * share_inside<Dim>(wall_nodes_, grid_.node_index(a, n)), dt);

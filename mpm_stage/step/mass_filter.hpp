@@ -168,8 +168,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::keep_contact(int f, std::size_
     stop_approach<Dim>(*node.contact, m, node.allowed, v);
     // Friction has been booked with the velocity before the filter; the one after it displaces.
     if (const NodeGrip& grip = grip_[node.node]; grip.mass > 0.0) {
-      const double impulse = pooled_impulse(ground_, grip_.data() + node_of(f, 0), spread_.data() + node_of(f, 0), a,
-                                            static_cast<int>(node.node % block_nodes));
+      const double impulse = pooled_impulse<Dim>(ground_.contact_around(a), grip, spread_.data() + node_of(f, 0),
+                                                 static_cast<int>(node.node % block_nodes));
       grid_sums_[a].friction += impulse * friction_path<Dim>(grip, node.before, v);
     }
     for (int d = 0; d < Dim; ++d) {

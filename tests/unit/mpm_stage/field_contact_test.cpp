@@ -103,7 +103,7 @@ TEST_CASE("phi = 0 soil brakes by its strength times the surface, and not at all
 TEST_CASE("what nodes may take off the sliding goes to those that slide, and all of it where they do") {
   constexpr int nodes = Block<2>::nodes;
   std::vector<FieldGrip<2>> grip(nodes);
-  std::vector<FieldSpread> spread(nodes);
+  std::vector<Spread> spread(nodes);
   std::array<int, Block<2>::neighbours> around;
   around.fill(-1);
   around[Block<2>::neighbours / 2] = 0;

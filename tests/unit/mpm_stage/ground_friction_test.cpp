@@ -84,7 +84,7 @@ TEST_CASE("a node remembers its push for the time of a wave through 7 cells, and
       grip = {mass, 6.0 * mass * dt, {0.0, 1.0}};  // pushed three times as hard from now on
       smooth_grip(contact, mass, dt, smoothing_share(wave, slip), smoothed, grip);
     }
-    return grip.capacity / (mass * dt);
+    return grip.friction / (mass * dt);
   };
   CHECK(remembered(0.0, 14) == doctest::Approx(6.0 - 4.0 * std::pow(1.0 - 0.5 / 7.0, 14)));
   CHECK(remembered(0.004 * wave, 7) == doctest::Approx(6.0 - 4.0 * std::pow(1.0 - 1.0 / 7.0, 7)));

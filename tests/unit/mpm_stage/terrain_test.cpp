@@ -36,8 +36,8 @@ TEST_CASE("stopping the approach leaves sliding, friction takes its share and ne
   std::array<double, 2> v = {3.0, -2.0};
   const NodeGrip grip = stop_approach<2>(c, 10.0, 0.0, v);
   CHECK(v[1] == 0.0);
-  CHECK(grip.capacity == doctest::Approx(0.5 * 10.0 * 2.0));
-  const double lost = apply_friction<2>(grip, grip.capacity, v);
+  CHECK(grip.friction == doctest::Approx(0.5 * 10.0 * 2.0));
+  const double lost = apply_friction<2>(grip, grip.friction, v);
   CHECK(v[0] == doctest::Approx(2.0));
   CHECK(lost == doctest::Approx(10.0 * 1.0 * 2.0));
   apply_friction<2>(grip, 1e9, v);
