@@ -22,6 +22,7 @@
 
 #include "common/application.hpp"
 #include "common/error.hpp"
+#include "common/output_lock.hpp"
 #include "common/output_place.hpp"
 #include "common/patient_threads.hpp"
 #include "common/plausible_state.hpp"
@@ -66,7 +67,7 @@ Model model_of(const Arguments& arguments, const FemCase& options) {
 // Geometry -> mesh.msh, or a copy of the case's own mesh file, with a report on its quality.
 void make_mesh(const Arguments& arguments) {
   const FemCase options = read_fem_case(arguments.case_file, arguments.size);
-  check_output_folder(arguments.folder);
+  hold_output_folder(arguments.folder);
   const fs::path output = fs::path(arguments.folder) / "mesh.msh";
   require_replaceable(output);
   Mesh mesh;
@@ -91,7 +92,7 @@ void make_mesh(const Arguments& arguments) {
 // Mesh -> geostatic.h5: the dam at rest before the earthquake.
 void make_geostatic(const Arguments& arguments) {
   FemCase options = read_fem_case(arguments.case_file, arguments.size);
-  check_output_folder(arguments.folder);
+  hold_output_folder(arguments.folder);
   require_replaceable(fs::path(arguments.folder) / "geostatic.h5");
   echo_options(arguments.case_file, options.echo);
   options.provenance.add_file(mesh_path(arguments));
@@ -125,7 +126,7 @@ void check_restart(const Arguments& arguments, const FemCase& options, const Sta
 // geostatic.h5 (or any state file) and the motion -> snapshots, histories, summary.json.
 void make_shake(const Arguments& arguments, bool echo) {
   FemCase options = read_fem_case(arguments.case_file, arguments.size);
-  check_output_folder(arguments.folder);
+  hold_output_folder(arguments.folder);
   const Motion motion = case_motion(options);
   if (echo) echo_options(arguments.case_file, options.echo);
   options.provenance.add_file(mesh_path(arguments));
@@ -155,7 +156,7 @@ void make_shake(const Arguments& arguments, bool echo) {
 // A state after the shaking -> its pore pressures at rest again.
 void make_consolidation(const Arguments& arguments) {
   FemCase options = read_fem_case(arguments.case_file, arguments.size);
-  check_output_folder(arguments.folder);
+  hold_output_folder(arguments.folder);
   echo_options(arguments.case_file, options.echo);
   options.provenance.add_file(mesh_path(arguments));
   options.provenance.add_file(arguments.from);
@@ -239,7 +240,7 @@ int main(int argc, char** argv) {
   calibrate->add_option("-o,--output", calibration.output_folder, "Folder of curves, picture and parameters")
       ->default_val("calibration");
   calibrate->callback([&] {
-    check_output_folder(calibration.output_folder);
+    hold_output_folder(calibration.output_folder);
     run_calibration(calibration);
   });
   return run_application(app, argc, argv);

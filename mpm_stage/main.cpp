@@ -18,7 +18,7 @@
 
 #include "common/application.hpp"
 #include "common/case_settings.hpp"
-#include "common/output_place.hpp"
+#include "common/output_lock.hpp"
 #include "common/patient_threads.hpp"
 #include "mpm_stage/run/interrupt.hpp"
 #include "mpm_stage/run/runout.hpp"
@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
     const CaseFile file(case_path);
     const Scene scene = read_scene(file, particles, size);
     file.finish();
-    check_output_folder(output);
+    hold_output_folder(output);
     echo_options(case_path.string(), file.echo());
     Provenance provenance;
     provenance.program = "mpm_stage";

@@ -1,7 +1,7 @@
 """Damaged input: a file cut short at any length ends with exit status 1, a message, and no output under any name; one
 with bytes overwritten is either refused like that or gives a sound result, and never a crash.
 
-Usage: damaged_files_test.py TRANSFER_TOOL FOLDER
+Usage: damaged_files.py TRANSFER_TOOL FOLDER
 """
 
 import pathlib

@@ -2,7 +2,7 @@
 and said before the computation, a full disk ends with exit status 2, a message and nothing under a final name, and
 closed standard streams do not put messages into results.
 
-Usage: output_places_test.py TRANSFER_TOOL MPM_STAGE FOLDER (with import.json, transfer.json and mpm.json)
+Usage: output_places.py TRANSFER_TOOL MPM_STAGE FOLDER (with import.json, transfer.json and mpm.json)
 """
 
 import os
