@@ -52,6 +52,51 @@ std::size_t file_columns(const Field& field, const ParticleSet& particles) {
   return field.columns < 0 ? static_cast<std::size_t>(particles.components()) : static_cast<std::size_t>(field.columns);
 }
 
+const std::string pond_group = "/tailrun/ponds";
+
+void write_ponds(Hdf5Writer& file, const std::vector<PondedReach>& ponds) {
+  std::vector<std::string> names;
+  std::vector<double> level, extent, density;
+  std::vector<std::int32_t> endless;
+  for (const auto& pond : ponds) {
+    names.push_back(pond.name);
+    level.push_back(pond.level);
+    density.push_back(pond.density);
+    extent.insert(extent.end(), pond.extent.begin(), pond.extent.end());
+    endless.insert(endless.end(), pond.endless.begin(), pond.endless.end());
+  }
+  file.group(pond_group);
+  file.write_texts(pond_group + "/name", names, "names of the ponds");
+  file.write(pond_group + "/level", std::span<const double>(level), 0, "m", "level of the water");
+  file.write(pond_group + "/extent", std::span<const double>(extent), 2, "m", "from x to x");
+  file.write(pond_group + "/endless", std::span<const std::int32_t>(endless), 2, "1",
+             "1: the water goes on beyond that end");
+  file.write(pond_group + "/density", std::span<const double>(density), 0, "kg/m3", "of the water");
+}
+
+std::vector<PondedReach> read_ponds(const Hdf5Reader& file) {
+  const auto names = file.texts(pond_group + "/name");
+  const std::size_t n = names.size();
+  if (n == 0) file.fail(pond_group + "/name", "has no rows, but at least one pond is required");
+  const auto level = file.doubles(pond_group + "/level", n, 1), extent = file.doubles(pond_group + "/extent", n, 2);
+  const auto density = file.doubles(pond_group + "/density", n, 1);
+  const auto endless = file.integers(pond_group + "/endless", n, 2);
+  check_indices(file, pond_group + "/endless", endless, 0, 2);
+  check_positive(file, pond_group + "/density", density);
+  std::vector<PondedReach> ponds(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    ponds[k] = {names[k],
+                level[k],
+                {extent[2 * k], extent[2 * k + 1]},
+                {endless[2 * k] != 0, endless[2 * k + 1] != 0},
+                density[k]};
+    if (!(extent[2 * k + 1] > extent[2 * k]))
+      file.fail(pond_group + "/extent",
+                fmt::format("row {} ends at {:g} m, where it begins or before", k, extent[2 * k + 1]));
+  }
+  return ponds;
+}
+
 void check_lengths(const ParticleSet& particles) {
   const std::size_t n = particles.count();
   const auto require = [](bool holds, const std::string& name) {
@@ -108,6 +153,7 @@ void write_particles(const std::filesystem::path& path, const ParticleSet& parti
   for (const auto& line : particles.terrain)
     file.write("/tailrun/terrain/" + line.name, std::span<const double>(line.points), 2, "m",
                "polyline x, y; material may be on its left-hand side");
+  if (!particles.ponds.empty()) write_ponds(file, particles.ponds);
   file.group("/tailrun/notes");
   for (const auto& [name, text] : particles.notes)
     file.write_texts("/tailrun/notes/" + name, {text}, "text of the program that wrote this file");
@@ -159,6 +205,7 @@ ParticleSet read_particles(const std::filesystem::path& path) {
     if (line.points.size() < 4) file.fail("/tailrun/terrain/" + name, "is a line of fewer than 2 points");
     particles.terrain.push_back(std::move(line));
   }
+  if (file.has(pond_group)) particles.ponds = read_ponds(file);
   for (const auto& name : file.members_if("/tailrun/notes")) {
     const auto texts = file.texts("/tailrun/notes/" + name);
     if (!texts.empty()) particles.notes[name] = texts.front();

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/ponded_water.hpp"
 #include "common/provenance.hpp"
 
 namespace tailrun {
@@ -31,6 +32,7 @@ struct ParticleSet {
   std::vector<std::string> material_names;  // material_id indexes this
   std::vector<std::string> region_names;    // region_id indexes this
   std::vector<TerrainLine> terrain;
+  std::vector<PondedReach> ponds;
 
   std::vector<double> position;          // m, (n, 3)
   std::vector<double> velocity;          // m/s, (n, 3), relative to the base

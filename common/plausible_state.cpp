@@ -234,7 +234,12 @@ StateColumns columns_of(const ParticleSet& particles, const std::string& file, d
   s.weight_above.assign(n, 0.0);
   for (auto& [index, column] : columns) {
     std::sort(column.begin(), column.end(), [&](std::size_t a, std::size_t b) { return s.y[a] > s.y[b]; });
+    // Ponds weigh on the top.
     double above = 0.0;
+    for (const auto& pond : particles.ponds)
+      if (const double x = s.x[column.front()];
+          (pond.endless[0] || x >= pond.extent[0]) && (pond.endless[1] || x <= pond.extent[1]))
+        above += pond.density * gravity * std::max(0.0, pond.level - s.y[column.front()] - 0.25 * width);
     for (const std::size_t p : column) {
       const double own = particles.mass[p] * gravity / width;
       s.weight_above[p] = above + 0.5 * own;

@@ -1,7 +1,13 @@
 #include "common/snapshot.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <sstream>
 #include <stdexcept>
 
+#include "common/error.hpp"
 #include "common/file_format.hpp"
 #include "common/vtkhdf.hpp"
 
@@ -65,6 +71,26 @@ std::vector<double> without_third(const std::vector<double>& space) {
   return plane;
 }
 
+std::vector<PondedLines> read_ponds(const Hdf5Reader& file, const Snapshot& snapshot) {
+  const auto texts = file.texts("/tailrun/ponds/lines");
+  const auto level = file.doubles("/tailrun/ponds/level", texts.size(), 1);
+  std::vector<std::string> known;
+  for (const auto& line : snapshot.lines) known.push_back(line.name);
+  std::vector<PondedLines> ponds;
+  for (std::size_t k = 0; k < texts.size(); ++k) {
+    PondedLines pond{level[k], {}};
+    std::istringstream stream(texts[k]);
+    for (std::string name; std::getline(stream, name, '|');) {
+      if (std::find(known.begin(), known.end(), name) == known.end())
+        file.fail("/tailrun/ponds/lines", fmt::format("row {} names line '{}', which /tailrun/lines does not have.{}",
+                                                      k, name, did_you_mean(name, known)));
+      pond.lines.push_back(name);
+    }
+    ponds.push_back(std::move(pond));
+  }
+  return ponds;
+}
+
 }  // namespace
 
 void write_snapshot(const std::filesystem::path& path, const Snapshot& snapshot, const Provenance& provenance,
@@ -99,6 +125,17 @@ void write_snapshot(const std::filesystem::path& path, const Snapshot& snapshot,
   file.write_texts("/tailrun/region_names", snapshot.region_names, "names of the regions (gmsh physical surfaces)");
   file.write("/tailrun/phreatic_line", std::span<const double>(snapshot.phreatic_line), 2, "m",
              "polyline x, y of the phreatic line");
+  if (!snapshot.ponds.empty()) {
+    file.group("/tailrun/ponds");
+    std::vector<double> level;
+    std::vector<std::string> lines;
+    for (const auto& pond : snapshot.ponds) {
+      level.push_back(pond.level);
+      lines.push_back(fmt::format("{}", fmt::join(pond.lines, "|")));
+    }
+    file.write("/tailrun/ponds/level", std::span<const double>(level), 0, "m", "level of the water");
+    file.write_texts("/tailrun/ponds/lines", lines, "named lines that it stands on, separated by '|'");
+  }
   file.group("/tailrun/lines");
   for (const auto& line : snapshot.lines)
     file.write("/tailrun/lines/" + line.name, std::span<const std::int64_t>(line.edges), 2, "1",
@@ -144,6 +181,7 @@ Snapshot read_snapshot(const std::filesystem::path& path) {
     check_indices(file, "/tailrun/lines/" + name, line.edges, 0, static_cast<std::int64_t>(nodes));
     snapshot.lines.push_back(std::move(line));
   }
+  if (file.has("/tailrun/ponds")) snapshot.ponds = read_ponds(file, snapshot);
   return snapshot;
 }
 

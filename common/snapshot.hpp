@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "common/ponded_water.hpp"
 #include "common/provenance.hpp"
 
 namespace tailrun {
@@ -31,6 +32,7 @@ struct Snapshot {
   std::vector<std::string> region_names;  // region_id indexes this; gmsh physical groups of dimension 2
   std::vector<MeshLine> lines;
   std::vector<double> phreatic_line;  // m, (k, 2) polyline, empty when there is none
+  std::vector<PondedLines> ponds;
 
   std::vector<double> position;              // m, (N, 2), undeformed
   std::vector<double> displacement;          // m, (N, 2)

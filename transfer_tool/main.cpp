@@ -28,6 +28,7 @@
 #include "transfer_tool/import/import_tables.hpp"
 #include "transfer_tool/inspect/file_report.hpp"
 #include "transfer_tool/options/transfer_case.hpp"
+#include "transfer_tool/sample/pond_reach.hpp"
 
 namespace {
 
@@ -91,6 +92,8 @@ void run(const RunOptions& options) {
   if (wanted.terrain.any()) particles.terrain = terrain_lines(snapshot, kept, wanted.terrain);
   if (wanted.terrain.walls)
     for (auto& line : wall_lines(snapshot, kept, wanted.terrain)) particles.terrain.push_back(std::move(line));
+  particles.ponds = pond_reaches(snapshot);
+  check_standing_water(snapshot, kept, particles.ponds);
 
   // 4. Audit
   const Audit result = audit(

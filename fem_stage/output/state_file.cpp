@@ -52,6 +52,7 @@ Snapshot make_snapshot(const Model& model, const State& state, double rigid_velo
     out.lines.push_back(std::move(line));
   }
   out.phreatic_line = model.options->phreatic_line;
+  for (const auto& pond : model.options->boundaries.ponds) out.ponds.push_back({pond.level, pond.lines});
   out.position = model.mesh.position;
   out.displacement = state.displacement;
   out.velocity = state.velocity;

@@ -16,6 +16,7 @@ namespace tailrun::mpm {
 namespace {
 
 const char* const format_name = "mpm_checkpoint";
+constexpr std::size_t pond_numbers = 6;                      // of a PondState
 constexpr std::int64_t block_range = std::int64_t{1} << 20;  // of the grid's keys
 
 // Calls action(name, unit, column) for all columns that the next step reads; it writes the gradients before it does.
@@ -229,6 +230,18 @@ void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, do
              "nodes at which velocity fields met in the last step");
   file.write("/grid/sleep_clocks", state.sleep_clocks, 0, "s",
              "of each block: calm so far, or minus the rest of its nap");
+  if (!state.ponds.empty()) {
+    std::vector<double> ponds;
+    for (const PondState& pond : state.ponds) {
+      ponds.insert(ponds.end(), {pond.level, pond.mapped_level, pond.escaped});
+      ponds.insert(ponds.end(), pond.place.begin(), pond.place.end());
+    }
+    file.write(
+        "/grid/ponds", ponds, pond_numbers, "m, m, s, m",
+        "of each pond: level, level at the last sort, since when its water could leave (negative: never), where");
+    file.write("/grid/pond_shares", state.pond_shares, 0, "1",
+               "share of the water's pressure at the nodes of the active blocks, pond after pond");
+  }
   file.write("/particles/removed", std::span<const std::int32_t>(state.removed), 0, "1", "rows of the input");
   file.write("/particles/held", std::span<const std::int32_t>(state.held), 0, "1", "rows of the input");
 
@@ -319,6 +332,12 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
   check_indices(file, "/grid/meeting", meeting, 0, 2);
   state.meeting.assign(meeting.begin(), meeting.end());
   state.sleep_clocks = file.doubles("/grid/sleep_clocks", 0, 1);
+  if (!scene.solver.ponds.empty()) {
+    const auto ponds = file.doubles("/grid/ponds", scene.solver.ponds.size(), pond_numbers);
+    for (std::size_t k = 0; k < ponds.size(); k += pond_numbers)
+      state.ponds.push_back({ponds[k], ponds[k + 1], ponds[k + 2], {ponds[k + 3], ponds[k + 4], ponds[k + 5]}});
+    state.pond_shares = file.doubles("/grid/pond_shares", 0, 1);
+  }
   const auto removed = file.integers("/particles/removed", 0, 1), held = file.integers("/particles/held", 0, 1);
   check_indices(file, "/particles/removed", removed, 0, static_cast<std::int64_t>(like.count()));
   state.removed.assign(removed.begin(), removed.end());

@@ -132,6 +132,9 @@ void check_state(const Hdf5Reader& file, const SolverState<Dim>& state, const Sc
   if (scene.solver.sleep.speed > 0.0) length("/grid/sleep_clocks", state.sleep_clocks.size(), state.blocks.size());
   const std::size_t nodes = active_blocks<Dim>(state.blocks) * static_cast<std::size_t>(Block<Dim>::nodes);
   length("/grid/meeting", state.meeting.size(), scene.solver.fields.several() ? nodes : 0);
+  length("/grid/pond_shares", state.pond_shares.size(), scene.solver.ponds.size() * nodes);
+  for (const double share : state.pond_shares)
+    if (!(share >= 0.0 && share <= 1.0)) file.fail("/grid/pond_shares", "holds a value outside of [0, 1]");
   for (const double speed : state.wave_speed)
     if (speed < 0.0) file.fail("/grid/wave_speed", "holds a negative speed");
   if (!(state.next_dt > 0.0))

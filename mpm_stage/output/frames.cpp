@@ -28,6 +28,7 @@ ParticleSet particle_set(const Scene& scene, const Particles<Dim>& P, double tim
   set.material_names = start.material_names;
   set.region_names = start.region_names;
   set.terrain = start.terrain;
+  set.ponds = ponds_at(scene, time);
   for (const auto& line : scene.terrain_lines) {
     const auto same = [&line](const TerrainLine& t) { return t.name == line.name; };
     if (std::any_of(set.terrain.begin(), set.terrain.end(), same)) continue;

@@ -66,6 +66,7 @@ Json features(const Scene& scene) {
   say(o.fields.several(), fmt::format("velocity fields of their own ({})", o.fields.count));
   say(scene.walls.any_wall(), "walls of the grid");
   say(o.surface_share > 0.0, "velocities continued beyond the surface");
+  say(!o.ponds.empty(), "ponded water");
   say(!scene.walls.bodies.empty(), "moving bodies");
   say(scene.base.shaken(), "base shaking");
   say(o.local_damping > 0.0, "local damping");
@@ -165,6 +166,15 @@ Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& reco
   j["grid_bytes_per_particle"] =
       static_cast<double>(solver.grid_bytes()) / static_cast<double>(solver.particles().count());
   j["peak_memory_MB"] = static_cast<double>(usage.ru_maxrss) / 1024.0;
+  for (std::size_t k = 0; k < scene.solver.ponds.size(); ++k) {
+    const PondState& pond = solver.ponds()[k];
+    Json said = {{"name", scene.solver.ponds[k].name}, {"level_m", pond.level}, {"runs_over", pond.escaped >= 0.0}};
+    if (pond.escaped >= 0.0) {
+      said["runs_over_since_s"] = pond.escaped;
+      said["runs_over_at_m"] = std::vector<double>(pond.place.begin(), pond.place.begin() + scene.dimension);
+    }
+    j["ponds"].push_back(said);
+  }
   j["features"] = features(scene);
   j["remarks"] = scene.remarks;
   j["warnings"] = warnings();

@@ -89,6 +89,10 @@ void generate_particles(const CaseNode& root, const std::vector<Material>& mater
 std::vector<TerrainInput> read_terrain(const CaseNode& root, const ParticleSet& particles);
 // Needs the scene's materials and particles.
 void read_contact(const CaseNode& root, Scene& scene);
+// Needs the scene's particles, dimension and gravity.
+std::vector<Pond> read_ponds(const CaseNode& root, const Scene& scene);
+// The scene's ponds with their levels at `time` (s), as a particles file has them; their ranges along x only.
+std::vector<PondedReach> ponds_at(const Scene& scene, double time);
 std::vector<MovingBody<3>> read_bodies(const CaseNode& root, int dimension);
 std::vector<double> assign_cohesion(const CaseFile& file, const std::vector<Material>& materials,
                                     ParticleSet& particles);

@@ -303,6 +303,8 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
   }
   scene.terrain_lines = read_terrain(root, scene.particles);
   for (const auto& line : scene.terrain_lines) scene.terrain.add_line(line.points, line.friction, line.adhere);
+  scene.solver.ponds = read_ponds(root, scene);
+  scene.particles.ponds = ponds_at(scene, 0.0);
   drop_rigid(scene);
   if (scene.particles.count() == 0) root.fail("materials", "no particle is left: all materials are rigid");
   check_placement(root, scene);

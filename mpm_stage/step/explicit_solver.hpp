@@ -16,6 +16,7 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "common/error.hpp"
 #include "mpm_stage/boundary/contact_gap.hpp"
@@ -24,6 +25,7 @@
 #include "mpm_stage/boundary/half_spaces.hpp"
 #include "mpm_stage/boundary/held_directions.hpp"
 #include "mpm_stage/boundary/mirror_walls.hpp"
+#include "mpm_stage/boundary/ponded_water.hpp"
 #include "mpm_stage/boundary/surface_extension.hpp"
 #include "mpm_stage/grid/field_layout.hpp"
 #include "mpm_stage/grid/field_sides.hpp"
@@ -58,7 +60,8 @@ class ExplicitSolver final : public Solver<Dim> {
         body_velocity_(walls.bodies.size()),
         ground_(terrain, options.contact_reach * cell_size),
         extension_(options.surface_share),
-        sleep_(options.sleep) {
+        sleep_(options.sleep),
+        water_(options.ponds) {
     double mass = 0.0;
     for (const double m : P_.mass) mass += m;
     mass_cutoff_ = (options.mass_cutoff < 0.0 ? Shape::mass_cutoff : options.mass_cutoff) * mass /
@@ -87,6 +90,7 @@ class ExplicitSolver final : public Solver<Dim> {
   }
 
   void start(double limit) override {
+    water_.set_time(0.0);
     sort();
     for (std::size_t p = 0; p < P_.count(); ++p) {
       fastest_wave_ = std::max(fastest_wave_, wave_speed_[P_.material[p]] + std::sqrt(speed_squared(p)));
@@ -108,16 +112,18 @@ class ExplicitSolver final : public Solver<Dim> {
     report.dt = dt;
     if (sleep_.active() && std::any_of(inertial.begin(), inertial.end(), [](double a) { return a != 0.0; }))
       sleep_.wake_all();
+    if (sleep_.active() && water_.moves(time_ + dt)) sleep_.wake_all();
     update_grid(dt, body, inertial);
     if constexpr (Transfer == TransferName::fmpm) filter_velocity(dt);
     gather(dt, report);
-    if (drift_ > largest_drift || leaving_) {
+    if (drift_ > largest_drift || leaving_ || water_.outdated(h_)) {
       sort();
       report.sorted = true;
     }
     next_dt_ = longest_step(limit);
     report.next_dt = next_dt_;
     if (averaging_) average(report.sorted);
+    if (water_.any()) water_.set_time(time_ + dt);
     update_stresses(dt);
     time_ += dt;
     return report;
@@ -130,6 +136,7 @@ class ExplicitSolver final : public Solver<Dim> {
   const PhaseSeconds& seconds() const override { return seconds_; }
   std::array<double, Dim> boundary_impulse() const override { return impulse_; }
   const std::vector<BodyState<Dim>>& bodies() const override { return bodies_; }
+  const std::vector<PondState>& ponds() const override { return water_.states(); }
   std::vector<std::int32_t> removed() const override { return removed_; }
   std::vector<std::int32_t> held() const override {
     std::vector<std::int32_t> identities;
@@ -267,6 +274,7 @@ class ExplicitSolver final : public Solver<Dim> {
   GripMemory<Dim> grip_memory() const;
   void remember_grip(const GripMemory<Dim>& memory);
   bool in_reach_of_body(std::size_t a, int n) const;
+  bool is_solid(std::size_t a, int n) const;
   bool still(std::size_t a) const;
   template <class Load>
   bool sleeps_on(std::size_t b, const Vec4* tile, Load load, double dt);
@@ -313,6 +321,8 @@ class ExplicitSolver final : public Solver<Dim> {
   void particles_to_grid();
   void scatter_block(std::size_t b);
   void scatter_ground_gaps(std::size_t b);
+  double water_potential(const std::vector<double>& levels) const;
+  void book_water();
   void rub_ground(const Drive& drive);
   void rub_block(int f, std::size_t a, const Drive& drive);
   void sum_kinetic_after();
@@ -336,6 +346,9 @@ class ExplicitSolver final : public Solver<Dim> {
   MirrorWalls<Dim> mirrors_;
   SurfaceExtension<Dim> extension_;
   SleepingBlocks<Dim> sleep_;
+  PondedWater<Dim> water_;
+  double water_potential_ = 0.0;      // J, PondedWater::potential of all particles
+  std::vector<double> water_levels_;  // m, for which that is
   bool averaging_ = false, leaving_ = false, starts_with_spin_ = false;
   double kinetic_ = 0.0;     // J, of the particles on the nodes
   double nodes_gain_ = 0.0;  // J, what the nodes' kinetic energy has grown by in this step

@@ -157,6 +157,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses(double dt) {
     work_.plastic += stress_work_[b].dissipated;
     work_.pore_pressure += stress_work_[b].pore_pressure;
   }
+  if (water_.any()) book_water();
   add_time(seconds_.stress_and_scatter, since);
 }
 
@@ -206,9 +207,30 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::scatter_block(std::size_t b) {
       mpm::particles_to_grid<Shape, Split, false>(next_dt_, h1_, corner(b), P_, span.begin, span.end, tile, beside);
     else
       mpm::particles_to_grid<Shape, Split, true>(next_dt_, h1_, corner(b), P_, span.begin, span.end, tile, beside);
+    if (water_.any())
+      water_.template scatter<Shape, Split>(grid_, b, next_dt_, corner(b), P_, span.begin, span.end, tile, beside);
   });
   if (fields_.near_shared(b)) scatter_interfaces(b);
   if (ground_.any()) scatter_ground_gaps(b);
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+double ExplicitSolver<Dim, Shape, Split, Transfer>::water_potential(const std::vector<double>& levels) const {
+  std::vector<double> of_block(grid_.occupied());
+#pragma omp parallel for schedule(dynamic, 4)
+  for (std::size_t b = 0; b < grid_.occupied(); ++b)
+    of_block[b] = water_.template potential<Shape>(grid_, b, corner(b), P_, levels);
+  return std::accumulate(of_block.begin(), of_block.end(), 0.0);
+}
+
+// While level and shares stay as they are, what the water's potential has lost is what it has done to the particles.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::book_water() {
+  const double now = water_potential(water_levels_);
+  work_.external += water_potential_ - now;
+  const std::vector<double> levels = water_.levels();
+  water_potential_ = levels == water_levels_ ? now : water_potential(levels);
+  water_levels_ = levels;
 }
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>

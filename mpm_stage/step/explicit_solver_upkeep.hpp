@@ -35,6 +35,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::sort() {
     }
   }
   if (sleep_.active()) sleep_.before_sort(grid_);
+  // What new shares change is no work, nor what particles take along that leave.
+  if (water_.any() && sorts_ > 0) water_potential_ -= water_potential(water_levels_);
   grid_.sort(P_, keep, options_.fields);
   if (options_.fields.by_side && find_sides<Dim, Shape>(
                                      grid_, options_.fields, [this](std::size_t b) { return corner(b); }, P_))
@@ -47,6 +49,11 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::sort() {
         if (speed_squared(p) > 0.0) return true;
       return false;
     });
+  if (water_.any()) {
+    water_.update(grid_, P_, time_, [this](std::size_t a, int n) { return is_solid(a, n); });
+    if (sorts_ == 0) water_levels_ = water_.levels();
+    water_potential_ += water_potential(water_levels_);
+  }
   ++sorts_;
   drift_ = 0.0;
   leaving_ = false;
@@ -181,6 +188,19 @@ bool ExplicitSolver<Dim, Shape, Split, Transfer>::in_reach_of_body(std::size_t a
   return false;
 }
 
+// Whether node n of active block a lies in the ground, beyond a wall or in a body.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+bool ExplicitSolver<Dim, Shape, Split, Transfer>::is_solid(std::size_t a, int n) const {
+  if (ground_.of_block(a) && ground_.distances(a)[n] < 0.0) return true;
+  const std::array<int, Dim> node = grid_.node_index(a, n);
+  for (int d = 0; d < Dim; ++d)
+    for (int s = 0; s < 2; ++s) {
+      const auto& side = wall_nodes_.side[d][s];
+      if (side.kind != WallKind::open && (s == 0 ? node[d] < side.node : node[d] > side.node)) return true;
+    }
+  return in_reach_of_body(a, n);
+}
+
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 std::vector<SurfaceRole> ExplicitSolver<Dim, Shape, Split, Transfer>::surface_roles() const {
   std::vector<SurfaceRole> role(grid_.active() * block_nodes, SurfaceRole::any);
@@ -228,6 +248,8 @@ SolverState<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::state() const {
   s.held = held();
   s.sleep_clocks = sleep_.clocks();
   s.meeting.assign(meeting_.begin(), meeting_.end());
+  s.ponds = water_.states();
+  s.pond_shares = water_.shares();
   return s;
 }
 
@@ -254,6 +276,11 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::resume(Particles<Dim> particle
   meeting_.assign(s.meeting.begin(), s.meeting.end());
   removed_ = s.removed;
   for (const std::int32_t k : s.held) held_[static_cast<std::size_t>(k)] = 1;
+  if (water_.any()) {
+    water_.restore(grid_, s.pond_shares, s.ponds);
+    water_levels_ = water_.levels();
+    water_potential_ = water_potential(water_levels_);
+  }
   particles_to_grid();
 }
 
@@ -269,6 +296,7 @@ double ExplicitSolver<Dim, Shape, Split, Transfer>::unbalanced_force_ratio(const
       mpm::particles_to_grid<Shape, true, false>(0.0, h1_, corner(b), P_, begin, end, m, f);
     else
       mpm::particles_to_grid<Shape, true, true>(0.0, h1_, corner(b), P_, begin, end, m, f);
+    if (water_.any()) water_.template scatter<Shape, true>(grid_, b, 0.0, corner(b), P_, begin, end, m, f);
   }
   double unbalanced = 0.0, weight = 0.0;
   for (std::size_t a = 0; a < grid_.active(); ++a) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mpm_stage/boundary/field_contact.hpp"
+#include "mpm_stage/boundary/ponded_water.hpp"
 #include "mpm_stage/boundary/terrain.hpp"
 #include "mpm_stage/boundary/walls.hpp"
 #include "mpm_stage/grid/block_grid.hpp"
@@ -44,6 +45,7 @@ struct SolverOptions {
   double surface_share = 0.0;
   double local_damping = 0.0;  // 1, Cundall's
   SleepOptions sleep;
+  std::vector<Pond> ponds;
   FieldChoice fields;
   FieldContactLaw contact;    // between the fields
   double mass_cutoff = -1.0;  // 1, relative to the mean particle mass; negative: the shape function's own
@@ -106,6 +108,8 @@ struct SolverState {
   std::vector<std::int32_t> removed, held;  // identities
   std::vector<std::int32_t> meeting;        // by nodes of the active blocks; none with one velocity field
   std::vector<double> sleep_clocks;         // s, of each block; none when nothing may sleep
+  std::vector<PondState> ponds;
+  std::vector<double> pond_shares;  // PondedWater::shares()
 };
 
 template <int Dim>
@@ -136,6 +140,7 @@ class Solver {
   virtual double unbalanced_force_ratio(const std::array<double, Dim>& body) const = 0;
   virtual std::array<double, Dim> boundary_impulse() const = 0;   // N s since the start, on the particles
   virtual const std::vector<BodyState<Dim>>& bodies() const = 0;  // in the order of Walls::bodies
+  virtual const std::vector<PondState>& ponds() const = 0;        // in the order of SolverOptions::ponds
   virtual std::size_t grid_bytes() const = 0;
   virtual std::vector<std::int32_t> removed() const = 0;  // identities of particles that left
   virtual std::vector<std::int32_t> held() const = 0;     // identities of particles held at a side of the domain

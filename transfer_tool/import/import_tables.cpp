@@ -173,6 +173,21 @@ void set_base_velocity(const CaseNode& root, Snapshot& snapshot) {
   }
 }
 
+// As fem.json has them.
+void set_ponds(const CaseNode& root, Snapshot& snapshot) {
+  std::vector<std::string> names;
+  for (const auto& line : snapshot.lines) names.push_back(line.name);
+  for (const CaseNode& node : root.list_or_empty("ponded_water")) {
+    PondedLines pond{node.number("level", "m", Range::any()), node.texts_or("lines", {})};
+    if (pond.lines.empty()) node.fail("lines", "at least one line of the ground under water is required");
+    for (const auto& name : pond.lines)
+      if (std::find(names.begin(), names.end(), name) == names.end())
+        node.fail("lines", fmt::format("no edge of the mesh lies on a line '{}'.{} Lines of the table 'nodes': {}",
+                                       name, did_you_mean(name, names), names.empty() ? "none" : joined(names)));
+    snapshot.ponds.push_back(std::move(pond));
+  }
+}
+
 }  // namespace
 
 Snapshot import_tables(const CaseFile& file, Provenance& provenance) {
@@ -240,6 +255,7 @@ Snapshot import_tables(const CaseFile& file, Provenance& provenance) {
     snapshot.excess_pore_pressure.push_back(snapshot.pore_pressure[node] - initial_pressure[node]);
   derive_element_fields(snapshot, initial_pressure);
   set_base_velocity(root, snapshot);
+  set_ponds(root, snapshot);
 
   file.finish();
   provenance.add_text(file.path(), file.text());

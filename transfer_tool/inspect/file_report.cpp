@@ -106,7 +106,7 @@ void read_other(const Hdf5Reader& file, const std::string& group, FileReport& re
   for (const auto& name : file.members(group)) {
     const std::string place = group + "/" + name;
     if (place == "/tailrun/provenance" || place == "/tailrun/notes" || place == "/tailrun/terrain" ||
-        place == "/tailrun/lines" || place.ends_with("_names"))
+        place == "/tailrun/ponds" || place == "/tailrun/lines" || place.ends_with("_names"))
       continue;
     if (file.is_group(place))
       read_other(file, place, report);
@@ -142,6 +142,13 @@ FileReport read_file_report(const std::filesystem::path& path) {
        {"time_s", "transfer_time_s", "dimension", "particle_size_m", "gravity_m_s2", "fluid_density_kg_m3", "step"})
     if (file.has_attribute("/tailrun", name))
       report.numbers.emplace_back(name, file.number_attribute("/tailrun", name));
+  for (const char* name : {"name", "lines"})
+    if (const std::string texts = fmt::format("/tailrun/ponds/{}", name); file.has(texts)) {
+      const auto names = file.texts(texts);
+      const auto level = file.doubles("/tailrun/ponds/level", names.size(), 1);
+      for (std::size_t k = 0; k < names.size(); ++k)
+        report.numbers.emplace_back(fmt::format("level_m of pond '{}'", names[k]), level[k]);
+    }
   read_provenance(file, report);
   read_grid(file, report);
   const auto mass = masses(file, report);

@@ -33,7 +33,8 @@ Snapshot small_snapshot() {
       s.depth = {2.0};
   s.excess_pore_pressure_ratio = s.max_excess_pore_pressure_ratio = s.effective_stress_ratio = s.shear_strain =
       s.scaled_jacobian = {0.5};
-  s.lines = {{"base", {0, 1}}};
+  s.lines = {{"base", {0, 1}}, {"face", {1, 2}}};
+  s.ponds = {{0.8, {"face", "base"}}};
   s.phreatic_line = {-1, 0.5, 2, 0.5};
   return s;
 }
@@ -53,6 +54,7 @@ ParticleSet small_particles() {
   p.extra["percentile"] = {0.5, 0.5};
   p.notes["audit"] = "{\"mass\": 3}";
   p.terrain = {{"bed", {0, 0, 10, 0}}};
+  p.ponds = {{"face", 0.8, {-1, 2}, {true, false}, 1030}, {"other", 2, {4, 5}, {false, false}, 1000}};
   return p;
 }
 
@@ -67,6 +69,9 @@ TEST_CASE("a snapshot comes back as it was") {
   CHECK(r.displacement == s.displacement);
   CHECK(r.effective_stress == s.effective_stress);
   CHECK(r.phreatic_line == s.phreatic_line);
+  REQUIRE(r.ponds.size() == 1);
+  CHECK(r.ponds[0].level == 0.8);
+  CHECK(r.ponds[0].lines == s.ponds[0].lines);
   CHECK(r.lines.at(0).edges == s.lines[0].edges);
   CHECK_FALSE(std::filesystem::exists(path.string() + ".part"));
 }
@@ -76,6 +81,12 @@ TEST_CASE("particles come back as they were, with further fields and notes") {
   const ParticleSet p = small_particles();
   write_particles(path, p, {});
   const ParticleSet r = read_particles(path);
+  REQUIRE(r.ponds.size() == 2);
+  CHECK(r.ponds[0].name == "face");
+  CHECK(r.ponds[0].level == 0.8);
+  CHECK(r.ponds[0].extent == p.ponds[0].extent);
+  CHECK(r.ponds[0].endless == p.ponds[0].endless);
+  CHECK(r.ponds[0].density == 1030);
   CHECK(r.effective_stress == p.effective_stress);
   CHECK(r.residual_strength == p.residual_strength);
   CHECK(r.extra.at("percentile") == p.extra.at("percentile"));

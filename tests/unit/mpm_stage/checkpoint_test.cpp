@@ -83,6 +83,9 @@ TEST_CASE("a run that was interrupted twice and went on leaves the same bytes as
   SUBCASE("blocks that sleep") {
     text.insert(text.rfind('}'), R"(, "sleep": {"speed": 3.5, "calm": 0.03, "nap": 0.05})");
   }
+  SUBCASE("water that falls on one side") {
+    text.insert(text.rfind('}'), R"(, "ponded_water": [{"level_history": [[0, 1.7], [0.3, 0.9]], "x_to": 1}])");
+  }
   SUBCASE("FMPM") {
     text.insert(text.rfind('}'), R"(, "scheme": {"transfer": "fmpm"})");
   }

@@ -134,3 +134,13 @@ TEST_CASE("columns can be left out by name, and a base line must exist") {
         std::string::npos);
   CHECK(refused(R"(, "base_line": "base")").empty());
 }
+
+TEST_CASE("ponded water stands on lines of the tables") {
+  const auto snapshot = Tables().snapshot(R"(, "ponded_water": [{"lines": ["surface", "left"], "level": 1.5}])");
+  REQUIRE(snapshot.ponds.size() == 1);
+  CHECK(snapshot.ponds[0].level == 1.5);
+  CHECK(snapshot.ponds[0].lines == std::vector<std::string>{"surface", "left"});
+  const auto refusal = example::message_of<tailrun::InputError>(
+      [] { Tables().snapshot(R"(, "ponded_water": [{"lines": ["surfce"], "level": 1.5}])"); });
+  CHECK(refusal.find("Did you mean 'surface'?") != std::string::npos);
+}

@@ -72,7 +72,7 @@ class Runner:
         shutil.copyfile(self.run(start, "start").frames()[0], path)
         with h5py.File(path, "r+") as f:
             point = f["VTKHDF/PointData"]
-            names = ("velocity", "effective_stress")
+            names = ("velocity", "effective_stress", "pore_pressure")
             arrays = {"x": f["VTKHDF/Points"][()], **{name: point[name][()] for name in names}}
             change(arrays)
             f["VTKHDF/Points"][...] = arrays["x"]

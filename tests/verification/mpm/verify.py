@@ -19,6 +19,7 @@ import friction
 import grains
 import pictures
 import strength
+import water
 from runner import Runner
 
 AGAINST = {"rigid_motion": "exact", "spinning_square": "exact", "vibrating_bar": "closed form",
@@ -32,11 +33,13 @@ AGAINST = {"rigid_motion": "exact", "spinning_square": "exact", "vibrating_bar":
            "martin_moyce": "experiment, Martin & Moyce 1952; potential flow", "column_3d": "experiments, Lube et al. 2004",
            "contact_block": "the block on rigid ground, same cell", "contact_stack": "at rest",
            "contact_incline": "closed form", "contact_impact": "closed form, waves in bars", "weak_layer": "closed form",
+           "pond_slope": "closed form; the buoyant weight alone", "pond_dam": "closed form", "pond_drawdown": "closed form",
+           "pond_3d": "closed form, Archimedes",
            "bagnold": "closed form, Bagnold's profile", "bui_mu_i": "experiment, Bui et al. 2008"}
 
 
 def check_of(name):
-    return next(getattr(module, name) for module in (elastic, friction, strength, collapse, contact, grains)
+    return next(getattr(module, name) for module in (elastic, friction, strength, collapse, contact, grains, water)
                 if hasattr(module, name))
 
 
