@@ -36,6 +36,7 @@ with tempfile.TemporaryDirectory() as name:
     (root / "cases").mkdir(parents=True)
     shutil.copy(source / "Makefile.cases", root)
     shutil.copy(source / "cases" / "case_part.py", root / "cases")
+    shutil.copytree(source / "cases" / "run", root / "cases" / "run")
     shutil.copytree(source / "cases" / "template", root / "cases" / "dam")
     log = root / "log"
     for program in ("fem_stage", "transfer_tool", "mpm_stage"):
