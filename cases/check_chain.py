@@ -35,7 +35,9 @@ def problems(folder):
     checks = [
         (fem["finished"], "fem_stage did not finish"),
         (fem["inverted_elements"] == 0 and fem["min_scaled_jacobian"] > 0.0, "elements are inverted"),
-        (abs(fem["energy_J"]["residual_of_largest"]) < 0.05, "fem_stage's energy balance is open by more than 5 %"),
+        (abs(fem["energy_J"]["residual_of_largest"]) < 0.01, "fem_stage's energy balance is open by more than 1 %"),
+        (abs(fem["energy_J"]["hourglass"]) < 0.01 * abs(fem["energy_J"]["external_work"]),
+         "hourglass modes took more than 1 % of the work"),
         (quality["mean_excess_pore_pressure_ratio"][0] == 0.0, "there is excess pore pressure before the shaking"),
         (quality["mean_excess_pore_pressure_ratio"][-1] > 0.1, "shaking raised no pore pressure"),
         (quality["largest_displacement_m"][-1] > 0.01, "shaking moved nothing"),

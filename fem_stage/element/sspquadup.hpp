@@ -62,6 +62,17 @@ inline CentreGradient centre_gradient(const SspQuadUp& elements, const std::int6
   return out;
 }
 
+// du_y/dx - du_x/dy at the element's point.
+inline double vorticity(const SspQuadUp& elements, const std::int64_t* quads, std::span<const double> field,
+                        std::size_t e) {
+  double out = 0.0;
+  for (std::size_t i = 4 * e; i < 4 * e + 4; ++i) {
+    const auto node = static_cast<std::size_t>(quads[i]);
+    out += elements.dndx[i] * field[2 * node + 1] - elements.dndy[i] * field[2 * node];
+  }
+  return out;
+}
+
 // Index of (a, b) in a lower triangle stored row by row.
 constexpr int lower(int a, int b) {
   return a >= b ? a * (a + 1) / 2 + b : b * (b + 1) / 2 + a;

@@ -47,6 +47,7 @@ class ElasticPlasticPoints {
     committed_[i].plastic_strain = committed_[i].plastic_volume = 0.0;
     reset_trial(i);
   }
+  void start_yielding_stage(std::size_t i) { start_plastic_stage(i, false); }
   void refresh_moduli(std::size_t) {}
   void update(std::size_t first, std::span<const StrainIncrement> increment, std::span<long> substeps) {
     for (std::size_t k = 0; k < increment.size(); ++k) substeps[k] = update(first + k, increment[k]);

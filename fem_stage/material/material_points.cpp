@@ -128,6 +128,10 @@ void MaterialPoints::start_elastic_stage(std::span<const double> poisson_overrid
   });
 }
 
+void MaterialPoints::start_yielding_stage() {
+  groups_->for_each([](auto& model, std::size_t i, std::size_t) { model.start_yielding_stage(i); });
+}
+
 void MaterialPoints::start_plastic_stage(bool recompute_limits) {
   groups_->for_each([&](auto& model, std::size_t i, std::size_t) { model.start_plastic_stage(i, recompute_limits); });
 }

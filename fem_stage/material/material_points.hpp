@@ -42,6 +42,10 @@ class MaterialPoints {
   // Elastic from the committed stress on, shear modulus G_0 p_A for the PM4 models. poisson_override: one number per
   // material, NaN keeps that material's own; empty keeps all.
   void start_elastic_stage(std::span<const double> poisson_override);
+  // The stage goes on, and where stress is more than the model carries at rest (tension, shear beyond its strength) it
+  // is brought back at once and from now on; what is out of balance then is the caller's to spread. The PM4 models'
+  // compatible mode keeps such stress, as OpenSees does.
+  void start_yielding_stage();
   // The models themselves from the committed stress on: void ratio at its input value, memory and fabric erased
   // (pm4 "FirstCall"), Poisson's ratio the material's own. recompute_limits: A_do and z_max (PM4Silt: the strength,
   // too) are worked out from this stress even if an earlier plastic stage had done it (OpenSees keeps the earlier

@@ -32,6 +32,22 @@ void elastic_stage_update(const Law& law, double poisson, const Pm4State& commit
   trial.volumetric_strain += strain.volumetric;
 }
 
+// Brings a stress at rest back to what `initialise` can take over without an offset: no tension, and at constant p no
+// more than the larger of the bounding and the dilatancy ratio.
+template <class Law>
+void return_to_initial_strength(const Law& law, Pm4Variables& v) {
+  if (v.p <= 0.0) {
+    v.p = 0.0;
+    v.s = {};
+    return;
+  }
+  Pm4PointConstants point;
+  set_initial_constants(law, v.p, v.p - v.s.d, true, point);
+  const Pm4Surfaces surfaces = law.surfaces(point, std::max(v.p, point.p_min), law.index0);
+  const double most = sqrt_half * std::max(surfaces.M_b, surfaces.M_d) * v.p, size = norm(v.s);
+  if (size > most) v.s = (most / size) * v.s;
+}
+
 // Starts the plastic stage from a stress (pm4 manuals, "FirstCall"): memory and fabric are erased, the void ratio is
 // the input one, and whatever the model cannot carry (tension, q/p above both surfaces) becomes a constant offset. A_do
 // and z_max are worked out again when `recompute` is set or when they never were.

@@ -38,6 +38,7 @@ class Pm4Points {
     trial_.emplace_back();
     constants_.emplace_back();
     stage_.push_back({0.0, law->poisson, 0.0});
+    yields_.push_back(0);
     last_strain_.emplace_back();
     substeps_.push_back(0);
   }
@@ -48,6 +49,7 @@ class Pm4Points {
     committed_[i].v.s = {-0.5 * (s.xx - s.yy), -s.xy};
     constants_[i] = Pm4PointConstants{};
     stage_[i] = {0.0, law.poisson, s.zz - law.poisson * (s.xx + s.yy)};
+    yields_[i] = 0;
     set_elastic_moduli(i);
   }
   void start_elastic_stage(std::size_t i, double poisson) {
@@ -60,8 +62,15 @@ class Pm4Points {
     constants_[i].offset_p = 0.0;
     constants_[i].offset_s = {};
     stage_[i].plastic = 0.0;
+    yields_[i] = 0;
     stage_[i].zz_origin = s.zz - stage_[i].poisson * (s.xx + s.yy);
     set_elastic_moduli(i);
+  }
+  void start_yielding_stage(std::size_t i) {
+    if (law_[i]->compatibility == Pm4Compatibility::opensees) return;
+    yields_[i] = 1;
+    return_to_initial_strength(*law_[i], committed_[i].v);
+    reset_trial(i);
   }
   void start_plastic_stage(std::size_t i, bool recompute) {
     const PlaneStrainStress s = stress(i, committed_[i]);
@@ -114,6 +123,7 @@ class Pm4Points {
       const PlaneStrain strain{-(e.xx + e.yy), {-0.5 * (e.xx - e.yy), -0.5 * e.xy}};
       if (stage_[i].plastic == 0.0) {
         elastic_stage_update(*law_[i], stage_[i].poisson, committed_[i], strain, trial_[i]);
+        if (yields_[i]) return_to_initial_strength(*law_[i], trial_[i].v);
         substeps[k] = 1;
         continue;
       }
@@ -202,6 +212,7 @@ class Pm4Points {
   std::vector<Pm4State> trial_;
   std::vector<Pm4PointConstants> constants_;
   std::vector<PointStage> stage_;
+  std::vector<char> yields_;  // in the elastic stage
   std::vector<StrainIncrement> last_strain_;
   std::vector<long> substeps_;
   Pm4AdaptiveOptions options_;

@@ -55,6 +55,7 @@ concept PointStore = requires(S store, const S& fixed, std::size_t i, const type
   store.add(law);
   store.set_stress(i, stress);           // forgets what the point was; elastic stage
   store.start_elastic_stage(i, number);  // Poisson's ratio, NaN: the stage's own
+  store.start_yielding_stage(i);         // still elastic, but with no more than the model carries at rest
   store.start_plastic_stage(i, yes);     // whether to work out again what follows from the stress at the start
   store.refresh_moduli(i);               // after the law's set_post_shaking
   store.update(i, increment, substeps);  // trial states of increment.size() <= update_block points from i on;

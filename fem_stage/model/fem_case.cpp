@@ -101,6 +101,7 @@ AbovePhreaticLine read_above_phreatic_line(const CaseNode& node) {
 GeostaticOptions read_geostatic(const CaseNode& node) {
   GeostaticOptions out;
   out.K0 = node.number_or("K0", "1", Range::open(0.0, 1.0), out.K0);
+  out.yielding = node.choice_or("gravity", {"yielding", "elastic"}, "yielding") == "yielding";
   const std::string seepage = node.choice_or("seepage", {"isotropic", "by_region", "hydrostatic"}, "isotropic");
   out.seepage = seepage == "isotropic"   ? Seepage::isotropic
                 : seepage == "by_region" ? Seepage::by_region
@@ -136,6 +137,8 @@ ShakeOptions read_shake(const CaseNode& node) {
   out.refactor_above = static_cast<int>(solver.integer_or("refactor_above", 0, 1000, out.refactor_above));
   out.acceleration_depth = static_cast<int>(solver.integer_or("acceleration_depth", 0, 50, out.acceleration_depth));
   out.large_displacement = node.boolean_or("large_displacement", false);
+  if (out.large_displacement)
+    out.spin = node.choice_or("spin", {"polar", "jaumann"}, "polar") == "polar" ? Spin::polar : Spin::jaumann;
   return out;
 }
 

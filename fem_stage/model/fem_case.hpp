@@ -46,11 +46,18 @@ struct AbovePhreaticLine {
 };
 
 struct GeostaticOptions {
-  double K0 = 0.5;  // at-rest ratio of the elastic stage: Poisson ratio K0 / (1 + K0)
+  double K0 = 0.5;       // at-rest ratio of the elastic stage: Poisson ratio K0 / (1 + K0)
+  bool yielding = true;  // gravity leaves no stress that the models cannot carry
   Seepage seepage = Seepage::isotropic;
   double settle_time = 0.0;  // s of pseudo-time after the switch to the plastic models
   double settle_step = 0.1;  // s
   double tolerance = 1e-3;   // largest residual force that is accepted at the end, of the weight
+};
+
+// The frame that stress and the models' directions live in turns with
+enum class Spin {
+  polar,    // the rotation R of F = R U (Green & Naghdi 1965)
+  jaumann,  // the vorticity: in simple shear half the shear without end
 };
 
 struct ShakeOptions {
@@ -66,6 +73,7 @@ struct ShakeOptions {
   int refactor_above = 6;      // iterations of a step after which the matrix is made anew
   int acceleration_depth = 6;  // corrections that Anderson acceleration combines; 0 = off
   bool large_displacement = false;
+  Spin spin = Spin::polar;  // of the material's frame, with large displacement
 };
 
 // After the shaking: quasi-static steps of growing length.

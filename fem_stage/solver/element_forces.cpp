@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 
+#include "common/error.hpp"
 #include "fem_stage/model/soft_fluid.hpp"
 #include "fem_stage/solver/averaged_mass.hpp"
 
@@ -29,6 +31,8 @@ ElementForces::ElementForces(const Model& model, double damping, bool large_disp
   mobility_.assign(count, 1.0);
   hourglass_committed_.assign(2 * count, 0.0);
   hourglass_trial_.assign(2 * count, 0.0);
+  hourglass_mode_.assign(2 * count, 0.0);
+  hourglass_work_.assign(count, 0.0);
   strain_.assign(3 * count, 0.0);
   stress_.assign(4 * count, 0.0);
   global_stress_.assign(4 * count, 0.0);
@@ -62,6 +66,8 @@ UpdateReport ElementForces::evaluate(MaterialPoints& points, std::span<const dou
       material_strain_[3 * e + 1] = local.yy;
       material_strain_[3 * e + 2] = 2.0 * local.xy;
     }
+    hourglass_mode_[2 * e] = qx;
+    hourglass_mode_[2 * e + 1] = qy;
     const double g = hourglass_modulus(e);
     hourglass_trial_[2 * e] =
         hourglass_committed_[2 * e] + g * (el.hourglass[3 * e] * qx + el.hourglass[3 * e + 1] * qy);
@@ -139,22 +145,36 @@ UpdateReport ElementForces::evaluate(MaterialPoints& points, std::span<const dou
   return report;
 }
 
+// How far the element's frame has turned since the last commit (rad).
+double ElementForces::turn_since(std::size_t e, std::span<const double> displacement,
+                                 std::span<const double> increment) const {
+  const auto* quads = model_.mesh.quads.data();
+  if (model_.options->shake.spin == Spin::jaumann) return 0.5 * vorticity(moved_, quads, increment, e);
+  // F = R U: tan(angle of R) = (F_yx - F_xy)/(F_xx + F_yy). The turn nearest to none, as angles come back after 2 pi.
+  const CentreGradient g = centre_gradient(model_.elements, quads, displacement, e);
+  const double angle = std::atan2(vorticity(model_.elements, quads, displacement, e), 2.0 + g.xx + g.yy);
+  return std::remainder(angle - rotation_[e], 2.0 * std::numbers::pi);
+}
+
 void ElementForces::commit(MaterialPoints& points, State& state, std::span<const double> increment) {
+  for (std::size_t i = 0; i < hourglass_mode_.size(); ++i)
+    hourglass_work_[i / 2] += 0.5 * (hourglass_committed_[i] + hourglass_trial_[i]) * hourglass_mode_[i];
   points.commit();
+  if (model_.options->hourglass_current_modulus) last_shear_ = shear_;
   points.elastic_moduli(bulk_, shear_);
+  if (model_.options->hourglass_current_modulus) {
+    // A spring that softens lets go of its force; one that hardens keeps it. Neither makes energy.
+    for (std::size_t i = 0; i < hourglass_trial_.size(); ++i)
+      hourglass_trial_[i] *= std::min(1.0, shear_[i / 2] / last_shear_[i / 2]);
+  }
   hourglass_committed_ = hourglass_trial_;
   state.hourglass_force = hourglass_trial_;
   state.stress = global_stress_;
   soft_fluid_mobility(model_, state.pressure, mobility_);
   if (!large_) return;
-  const auto* quads = model_.mesh.quads.data();
 #pragma omp parallel for schedule(static)
   for (std::size_t e = 0; e < model_.count(); ++e) {
-    double spin = 0.0;
-    for (std::size_t a = 0; a < 4; ++a) {
-      const auto node = static_cast<std::size_t>(quads[4 * e + a]);
-      spin += 0.5 * (moved_.dndx[4 * e + a] * increment[2 * node + 1] - moved_.dndy[4 * e + a] * increment[2 * node]);
-    }
+    const double spin = turn_since(e, state.displacement, increment);
     rotation_[e] += spin;
     const double hx = hourglass_committed_[2 * e], hy = hourglass_committed_[2 * e + 1];
     hourglass_committed_[2 * e] = hx * std::cos(spin) - hy * std::sin(spin);
@@ -173,6 +193,10 @@ void ElementForces::reset(const MaterialPoints& points, const State& state) {
   if (!large_) return;
   if (!state.rotation.empty()) rotation_ = state.rotation;
   if (!state.turned_hourglass_force.empty()) hourglass_committed_ = state.turned_hourglass_force;
+  if (!state.rotation.empty() && model_.options->shake.spin == Spin::polar)
+    for (std::size_t e = 0; e < model_.count(); ++e)
+      if (std::abs(turn_since(e, state.displacement, {})) > 1e-6)
+        throw InputError("the state's frames have turned with the other /shake/spin, 'jaumann'; go on with that");
   moved_ = build_sspquadup(model_.mesh, state.displacement, model_.thickness, model_.options->hourglass_shape,
                            model_.options->pressure_points);
 }
@@ -226,18 +250,6 @@ double ElementForces::damping_power(std::size_t e, std::span<const double> veloc
   const double power = el.volume[e] * (c11 * (vxx * vxx + vyy * vyy) + 2.0 * c12 * vxx * vyy + shear_[e] * vxy * vxy) +
                        g * (f[0] * qx * qx + 2.0 * f[1] * qx * qy + f[2] * qy * qy);
   return damping_ * power;
-}
-
-double ElementForces::hourglass_energy(const State& state) const {
-  const SspQuadUp& el = elements();
-  double energy = 0.0;
-  for (std::size_t e = 0; e < model_.count(); ++e) {
-    const double g = hourglass_modulus(e), f11 = g * el.hourglass[3 * e], f12 = g * el.hourglass[3 * e + 1],
-                 f22 = g * el.hourglass[3 * e + 2];
-    const double hx = state.hourglass_force[2 * e], hy = state.hourglass_force[2 * e + 1], det = f11 * f22 - f12 * f12;
-    if (det > 0.0) energy += 0.5 * (f22 * hx * hx - 2.0 * f12 * hx * hy + f11 * hy * hy) / det;
-  }
-  return energy;
 }
 
 }  // namespace tailrun::fem

@@ -18,7 +18,7 @@ namespace tailrun::fem {
 class ElementForces {
  public:
   // `damping` is a1 (s). With `large_displacement` the geometry follows the committed displacement and stress lives in
-  // a frame that rotates with the element (the spin integrated over the steps).
+  // a frame that rotates with the element (/shake/spin).
   ElementForces(const Model& model, double damping, bool large_displacement);
 
   // Trial state: `increment` (m, (N, 2)) since the last commit, velocity (N, 2), pressure and rate (N). Writes
@@ -41,7 +41,7 @@ class ElementForces {
     return global_stress_;
   }                                                                     // Pa, (M, 4), effective, of the last evaluation
   std::span<const double> strain_increment() const { return strain_; }  // (M, 3), global axes
-  double hourglass_energy(const State& state) const;                    // J, stored in the hourglass modes
+  std::span<const double> hourglass_work() const { return hourglass_work_; }  // J, (M), done on these modes so far
   double damping_power(std::size_t e,
                        std::span<const double> velocity) const;  // W, of the stiffness proportional damping
   double damping() const { return damping_; }
@@ -49,13 +49,16 @@ class ElementForces {
 
  private:
   double hourglass_modulus(std::size_t e) const;
+  double turn_since(std::size_t e, std::span<const double> displacement, std::span<const double> increment) const;
 
   const Model& model_;
   double damping_;
   bool large_;
   SspQuadUp moved_;
   std::vector<double> bulk_, shear_;  // of the last commit
-  std::vector<double> hourglass_committed_, hourglass_trial_;
+  std::vector<double> last_shear_;    // of the one before, where hourglass forces follow it
+  std::vector<double> hourglass_committed_, hourglass_trial_, hourglass_mode_;  // N, N, m: (M, 2)
+  std::vector<double> hourglass_work_;                                          // J, (M)
   std::vector<double> mobility_;  // 1, (M): share of the permeability, below 1 in a soft fluid under suction
   std::vector<double> rotation_;  // rad, (M), only with large displacement
   std::vector<double> strain_, material_strain_, stress_, global_stress_, element_forces_;

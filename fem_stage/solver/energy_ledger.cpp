@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "common/element_mean.hpp"
 #include "fem_stage/solver/averaged_mass.hpp"
@@ -9,8 +10,7 @@
 namespace tailrun::fem {
 
 double EnergyLedger::residual() const {
-  return external_work - kinetic_energy - skeleton_work - fluid_work - (hourglass_energy - initial_hourglass_energy) -
-         damping_work - dashpot_work;
+  return external_work - kinetic_energy - skeleton_work - fluid_work - hourglass_work - damping_work - dashpot_work;
 }
 
 double EnergyLedger::largest() const {
@@ -56,7 +56,8 @@ void EnergyRecorder::after(const Model& model, const State& state, const Element
   ledger.skeleton_work += skeleton;
   ledger.fluid_work += fluid;
   ledger.damping_work += damping * newmark.last_step();
-  ledger.hourglass_energy = forces.hourglass_energy(state);
+  const auto hourglass = forces.hourglass_work();
+  ledger.hourglass_work = std::accumulate(hourglass.begin(), hourglass.end(), 0.0);
 }
 
 }  // namespace tailrun::fem

@@ -11,14 +11,13 @@
 namespace tailrun::fem {
 
 struct EnergyLedger {
-  double external_work = 0.0;     // gravity, held reactions, base input
-  double kinetic_energy = 0.0;    // now
-  double skeleton_work = 0.0;     // integral of effective stress over strain
-  double fluid_work = 0.0;        // integral of -pore pressure over volumetric strain: stored in and lost by the water
-  double hourglass_energy = 0.0;  // change since the start
-  double damping_work = 0.0;      // stiffness proportional damping
+  double external_work = 0.0;   // gravity, held reactions, base input
+  double kinetic_energy = 0.0;  // now
+  double skeleton_work = 0.0;   // integral of effective stress over strain
+  double fluid_work = 0.0;      // integral of -pore pressure over volumetric strain: stored in and lost by the water
+  double hourglass_work = 0.0;  // done on the hourglass modes
+  double damping_work = 0.0;    // stiffness proportional damping
   double dashpot_work = 0.0;
-  double initial_hourglass_energy = 0.0;
 
   double residual() const;  // external work minus all others
   double largest() const;   // scale for the residual

@@ -12,6 +12,7 @@
 #include "common/warnings.hpp"
 #include "fem_stage/boundary/phreatic_line.hpp"
 #include "fem_stage/model/stage_freedoms.hpp"
+#include "fem_stage/solver/anderson.hpp"
 #include "fem_stage/solver/newmark.hpp"
 
 namespace tailrun::fem {
@@ -117,6 +118,35 @@ Balance balance_at_rest(const Model& model, const Freedoms::Equations& equations
   return out;
 }
 
+// Modified Newton with the elastic matrix `system` and Anderson acceleration. Returns the displacement (m, (N, 2))
+// whose balance is the one left in `balance`.
+std::vector<double> spread_out_of_balance(const Model& model, const Freedoms::Equations& equations,
+                                          MaterialPoints& points, ElementForces& forces, const State& state,
+                                          const std::vector<double>& load, SymmetricSystem& system, Balance& balance,
+                                          int& iterations) {
+  constexpr int most_iterations = 400, depth = 10;
+  const double wanted = 0.01 * model.options->geostatic.tolerance;
+  std::vector<double> weights = system.diagonal();
+  for (double& w : weights) w = std::abs(w);
+  Anderson anderson(weights.size(), depth, weights);
+  std::vector<double> displacement(2 * model.nodes(), 0.0), right(weights.size());
+  for (iterations = 0; iterations < most_iterations; ++iterations) {
+    balance = balance_at_rest(model, equations, points, forces, state, load, displacement);
+    if (balance.free_norm <= wanted) return displacement;
+    std::fill(right.begin(), right.end(), 0.0);
+    for (std::size_t i = 0; i < displacement.size(); ++i)
+      if (const int equation = equations.number[3 * (i / 2) + i % 2]; equation >= 0)
+        right[static_cast<std::size_t>(equation)] += balance.residual[i];
+    system.solve(right, right);
+    anderson.accelerate(right);
+    for (std::size_t i = 0; i < displacement.size(); ++i)
+      if (const int equation = equations.number[3 * (i / 2) + i % 2]; equation >= 0)
+        displacement[i] += right[static_cast<std::size_t>(equation)];
+  }
+  balance = balance_at_rest(model, equations, points, forces, state, load, displacement);
+  return displacement;
+}
+
 }  // namespace
 
 GeostaticReport run_geostatic(const Model& given, MaterialPoints& points, State& state) {
@@ -177,14 +207,31 @@ GeostaticReport run_geostatic(const Model& given, MaterialPoints& points, State&
   forces.commit(points, state, gravity_displacement);
   report.elastic_residual = balance.free_norm;
 
-  // 3. Switch to the plastic models from the stress found.
+  // 3. What that leaves of tension, and of shear beyond the strength, goes to the soil around.
+  if (options.yielding) {
+    points.start_yielding_stage();
+    forces.reset(points, state);
+    const std::vector<double> spread = spread_out_of_balance(model, equations, points, forces, state, load, system,
+                                                             balance, report.yielding_iterations);
+    forces.commit(points, state, spread);
+    report.yielding_residual = balance.free_norm;
+    if (balance.free_norm > options.tolerance) {
+      const auto n = balance.worst_node;
+      add_warning(
+          fmt::format("/geostatic/gravity: the soil's strength does not carry its weight as it is: {:.1e} of "
+                      "the weight stays out of balance, most at ({:.4g}, {:.4g})",
+                      balance.free_norm, model.mesh.x(n), model.mesh.y(n)));
+    }
+  }
+
+  // 4. Switch to the plastic models from the stress found.
   points.start_plastic_stage(true);
   forces.reset(points, state);
   balance = balance_at_rest(model, equations, points, forces, state, load, none);
   forces.commit(points, state, none);
   report.switch_residual = balance.free_norm;
 
-  // 4. Settle: strongly damped implicit steps (gamma 1.5, beta 1) in which water drains freely.
+  // 5. Settle: strongly damped implicit steps (gamma 1.5, beta 1) in which water drains freely.
   if (options.settle_time > 0.0) {
     NewmarkOptions newmark_options;
     newmark_options.gamma = newmark_options.theta = 1.5;
@@ -214,7 +261,7 @@ GeostaticReport run_geostatic(const Model& given, MaterialPoints& points, State&
   }
   report.final_residual = balance.free_norm;
 
-  // 5. The state at rest: what results refer to from now on.
+  // 6. The state at rest: what results refer to from now on.
   state.time = 0.0;
   for (auto* array : {&state.displacement, &state.velocity, &state.acceleration})
     std::fill(array->begin(), array->end(), 0.0);

@@ -9,9 +9,11 @@
 
 #include "common/error.hpp"
 #include "common/progress.hpp"
+#include "common/warnings.hpp"
 #include "fem_stage/model/stage_freedoms.hpp"
 #include "fem_stage/output/snapshot_plan.hpp"
 #include "fem_stage/output/state_file.hpp"
+#include "fem_stage/solver/energy_watch.hpp"
 #include "fem_stage/stage/free_field.hpp"
 
 namespace tailrun::fem {
@@ -159,7 +161,6 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
                              : 0.0;
   ElementForces forces(model, damping, options.large_displacement);
   forces.reset(points, state);
-  report.ledger.initial_hourglass_energy = forces.hourglass_energy(state);
   for (std::size_t i = 0; i < 2 * model.nodes(); ++i)  // what a restart brings along
     report.ledger.external_work += 0.5 * model.nodal_mass[i / 2] * state.velocity[i] * state.velocity[i];
   NewmarkOptions newmark_options{options.gamma,
@@ -184,6 +185,7 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
   // 3. Steps, with output on the way.
   History history(model, folder);
   QualitySeries quality(model, folder);
+  EnergyWatch energy;
   Progress progress("shake", options.duration, "s");
   std::size_t next_snapshot = 0;
   double next_record = 0.0, next_regular = output.snapshot_interval;
@@ -231,6 +233,7 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
     if (target <= before + slack) continue;  // a restart
     report.failure = stepper.advance(target - before, options.max_halvings);
     if (!report.failure.empty()) break;
+    energy.observe(report.ledger, target);
     state.time = target;  // no drift from adding up steps
     const auto ratio = excess_pore_pressure_ratio(model, state);
     for (std::size_t e = 0; e < model.count(); ++e)
@@ -252,6 +255,9 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
   history.finish();
   quality.finish();
   report.end_time = state.time;
+  report.energy_open_since = energy.open_since();
+  report.hourglass_since = energy.hourglass_since();
+  if (const auto text = energy.warning(model, report.ledger, forces.hourglass_work()); !text.empty()) add_warning(text);
   report.counts = newmark.counts();
   report.quality = quality.rows();
   report.window = find_transfer_window(report.quality, motion.significant_duration(0.05, 0.95).second);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "common/motion.hpp"
 #include "fem_stage/model/model.hpp"
@@ -16,6 +17,7 @@ struct ShakeReport {
   double end_time = 0.0, wall_seconds = 0.0, material_seconds = 0.0, output_seconds = 0.0;
   SolverCounts counts;
   EnergyLedger ledger;
+  std::optional<double> energy_open_since, hourglass_since;  // s, when so at the end (energy_watch.hpp)
   std::vector<QualityRow> quality;
   TransferWindow window;
   std::vector<std::string> snapshots;  // file names

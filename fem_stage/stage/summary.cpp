@@ -29,6 +29,8 @@ Json mesh_summary(const Mesh& mesh) {
 
 Json geostatic_summary(const GeostaticReport& report) {
   return {{"elastic_residual_of_weight", report.elastic_residual},
+          {"yielding_residual_of_weight", report.yielding_residual},
+          {"yielding_iterations", report.yielding_iterations},
           {"switch_residual_of_weight", report.switch_residual},
           {"final_residual_of_weight", report.final_residual},
           {"settlement_m", report.settlement},
@@ -99,11 +101,13 @@ Json shake_summary(const Model& model, const Motion& motion, const ShakeReport& 
                      {"kinetic", ledger.kinetic_energy},
                      {"skeleton_work", ledger.skeleton_work},
                      {"fluid_work", ledger.fluid_work},
-                     {"hourglass", ledger.hourglass_energy - ledger.initial_hourglass_energy},
+                     {"hourglass", ledger.hourglass_work},
                      {"damping", ledger.damping_work},
                      {"dashpots", ledger.dashpot_work},
                      {"residual", ledger.residual()},
-                     {"residual_of_largest", ledger.largest() > 0.0 ? ledger.residual() / ledger.largest() : 0.0}};
+                     {"residual_of_largest", ledger.largest() > 0.0 ? ledger.residual() / ledger.largest() : 0.0},
+                     {"open_since_s", optional(report.energy_open_since)},
+                     {"hourglass_above_2_percent_since_s", optional(report.hourglass_since)}};
   if (!report.quality.empty()) {
     const QualityRow& last = report.quality.back();
     double jacobian = 1.0;
