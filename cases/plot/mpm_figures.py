@@ -23,10 +23,10 @@ def plot_handover(plt, first, view, output):
     style.save(figure, output)
 
 
-def plot_displacement(plt, first, last, view, options, output):
+def plot_displacement(plt, first, last, view, output):
     extra = last.data["displacement"] - runout.displacement_at_transfer(first, last)
     size = np.hypot(extra[:, 0], extra[:, 1])
-    limit = options.get("displacement_scale", style.nice_limit(np.percentile(size, 99.9)))
+    limit = style.nice_limit(np.percentile(size, 99))  # a scale of its own: soil runs many times as far as the mesh moved
     figure, axis = plt.subplots(figsize=(style.WIDTH, style.panel_height(view) + 0.6))
     fields.draw_terrain(axis, last, view[2] - 1.0)
     style.true_aspect(axis, view)
@@ -121,7 +121,7 @@ def main():
     first, last, paths = runout.first_and_last(arguments.folder)
     view = runout.runout_view(first, last, options)
     plot_handover(plt, first, view, arguments.output / "handover.png")
-    plot_displacement(plt, first, last, view, options, arguments.output / "displacement_mpm.png")
+    plot_displacement(plt, first, last, view, arguments.output / "displacement_mpm.png")
     plot_stages(plt, paths, view, arguments.output / "runout.png")
     front = chain.series(arguments.folder / "front.csv")
     if front is not None:

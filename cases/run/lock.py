@@ -33,8 +33,8 @@ def acquire(path, refuse=False):
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            todo = "" if refuse else "; waiting for it to end"
-            print(f"{path.parent} is in use by {holder(path)}{todo}", file=sys.stderr, flush=True)
+            patience = "" if refuse else "; waiting for it to end"
+            print(f"{path.parent} is in use by {holder(path)}{patience}", file=sys.stderr, flush=True)
             if refuse:
                 file.close()
                 return None
@@ -44,7 +44,7 @@ def acquire(path, refuse=False):
             break
         file.close()
     file.truncate(0)
-    file.write(f"process {os.getpid()} on {socket.gethostname()} since {time.strftime('%Y-%m-%d %H:%M:%S')}\n")
+    file.write(f"process {os.getpid()} on {socket.gethostname()} since {time.strftime('%Y-%m-%d %H:%M:%S', time.gmtime())} UTC\n")
     file.flush()
     os.set_inheritable(file.fileno(), True)
     return file

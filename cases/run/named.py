@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Named runs: a case with a few values changed, beside its base run.
 
-    named.py run weak --results out/mochikoshi --case cases/mochikoshi --bin build/bin   with SET in the environment
+    named.py run weak --fem out/mochikoshi --phase out/mochikoshi --case cases/mochikoshi --bin build/bin     SET in the environment
     named.py list --results out/mochikoshi
     named.py remove weak --results out/mochikoshi
 
@@ -56,7 +56,6 @@ def donors(fem, phase, own=None):
         for path in sorted((base / "runs").glob("*")) + sorted((base / "runs").glob(".*.before")) + sorted((base / "runs").glob(".*.refused")):
             words = f"run {path.name}" if not path.name.startswith(".") else f"an earlier {path.name.split('.')[1]}"
             found.append((words, path))
-        found += [("a member of the sweep", path) for path in sorted((base / "sweep" / "members").glob("*"))]
     return [(words, path) for words, path in found if path.is_dir() and path != own]
 
 

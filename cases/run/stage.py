@@ -81,8 +81,8 @@ def finish(chain, root, name):
 
 
 def take(chain, name, donor, root):
-    """Results of the same input in another folder, as links to the same files (copies where links cannot be). False when
-    they change or go meanwhile."""
+    """Results of the same input in another folder, as links to the same files (copies where links cannot be): whoever
+    computes them anew gives new files their names and writes into none. False when they change or go meanwhile."""
     stamp = results_of(donor, name, chain.record(name)["key"])
     if stamp is None:
         return False

@@ -24,35 +24,15 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <string>
 #include <vector>
 
+#include "mpm_stage/boundary/pond.hpp"
 #include "mpm_stage/grid/block_grid.hpp"
 #include "mpm_stage/grid/shape_functions.hpp"
 #include "mpm_stage/grid/tiles.hpp"
 #include "mpm_stage/transfer/particles_to_grid.hpp"
 
 namespace tailrun::mpm {
-
-// y is up.
-struct Pond {
-  static constexpr double endless = std::numeric_limits<double>::infinity();
-  std::string name;
-  std::array<double, 3> low{-endless, -endless, -endless}, high{endless, endless, endless};  // m, the range; y: no end
-  std::vector<double> time, level;  // s, m: linear between them, constant before and after
-  double unit_weight = 9810.0;      // N/m3
-
-  double level_at(double t) const;
-};
-
-// What a pond has come to.
-struct PondState {
-  double level = 0.0;             // m
-  double mapped_level = 0.0;      // m, for which the shares were made
-  double escaped = -1.0;          // s, since when its water could leave its range; negative: it could not
-  std::array<double, 3> place{};  // m, where
-};
 
 template <int Dim>
 class PondedWater {

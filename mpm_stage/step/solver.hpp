@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "mpm_stage/boundary/field_contact.hpp"
-#include "mpm_stage/boundary/ponded_water.hpp"
+#include "mpm_stage/boundary/pond.hpp"
 #include "mpm_stage/boundary/terrain.hpp"
 #include "mpm_stage/boundary/walls.hpp"
 #include "mpm_stage/grid/block_grid.hpp"
