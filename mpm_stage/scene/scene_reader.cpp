@@ -63,13 +63,19 @@ void read_scheme(const CaseNode& root, Scene& scene) {
                : transfer == "aflip" ? TransferName::aflip
                : transfer == "flip"  ? TransferName::flip
                                      : TransferName::fmpm;
-  if (o.transfer == TransferName::aflip)
+  if (o.transfer == TransferName::aflip) {
+    const double flow_share = o.flow_transfer_damping / o.transfer_damping;
     o.transfer_damping = scheme.number_or("transfer_damping", "1", Range::between(0.0, 10.0), o.transfer_damping);
+    o.flow_transfer_damping = scheme.number_or("flow_transfer_damping", "1", Range::between(0.0, 10.0),
+                                               flow_share * o.transfer_damping);
+  }
   if (o.transfer == TransferName::flip)
     o.flip_share = scheme.number_or("flip_share", "1", Range::between(0.0, 1.0), 0.99);
   if (o.transfer == TransferName::fmpm)
     o.fmpm_order = static_cast<int>(scheme.integer_or("fmpm_order", 2, 6, o.fmpm_order));
   o.volumetric_average = scheme.boolean_or("volumetric_average", true);
+  if (o.volumetric_average)
+    o.crowding_relief = scheme.number_or("crowding_relief", "1", Range::between(0.0, 10.0), o.crowding_relief);
   o.soil_limits_friction = scheme.boolean_or("soil_limits_friction", true);
   o.contact_reach = scheme.number_or("contact_reach", "cells", Range::between(0.0, 1.0), o.contact_reach);
   if (const auto share = scheme.number_if("surface_share", "1", Range::between(0.0, 0.2))) o.surface_share = *share;

@@ -34,6 +34,7 @@
 #include "mpm_stage/step/grid_update.hpp"
 #include "mpm_stage/step/sleeping_blocks.hpp"
 #include "mpm_stage/step/solver.hpp"
+#include "mpm_stage/transfer/crowding.hpp"
 #include "mpm_stage/transfer/grid_to_particles.hpp"
 #include "mpm_stage/transfer/interface_sums.hpp"
 #include "mpm_stage/transfer/mass_matrix.hpp"
@@ -61,7 +62,8 @@ class ExplicitSolver final : public Solver<Dim> {
         ground_(terrain, options.contact_reach * cell_size),
         extension_(options.surface_share),
         sleep_(options.sleep),
-        water_(options.ponds) {
+        water_(options.ponds),
+        crowding_(0.0) {
     double mass = 0.0;
     for (const double m : P_.mass) mass += m;
     mass_cutoff_ = (options.mass_cutoff < 0.0 ? Shape::mass_cutoff : options.mass_cutoff) * mass /
@@ -72,6 +74,7 @@ class ExplicitSolver final : public Solver<Dim> {
       constants_.back().averaged = constants_.back().averaged && options.volumetric_average;
       averaging_ = averaging_ || constants_.back().averaged;
     }
+    if (averaging_) crowding_ = Crowding<Dim>(options.crowding_relief);
     limit_volumes();
     if (walls.bounded && walls.leaving == LeavingParticles::wall) {
       std::int32_t most = 0;
@@ -145,6 +148,7 @@ class ExplicitSolver final : public Solver<Dim> {
     return identities;
   }
   long sorts() const override { return sorts_; }
+  long relieved() const override { return relieved_; }
 
   double elastic_energy() const override {
     double energy = 0.0;
@@ -160,7 +164,7 @@ class ExplicitSolver final : public Solver<Dim> {
   std::size_t grid_bytes() const override {
     return grid_.bytes() + (tiles_.capacity() + velocity_.capacity() + change_.capacity()) * sizeof(Vec4) +
            beside_.capacity() * sizeof(SplitNode<Dim>) + (term_.capacity() + products_.capacity()) * sizeof(Vec4) +
-           averaged_tiles_.capacity() * sizeof(PatchSum) + averaged_.capacity() * sizeof(PatchFit);
+           averaged_tiles_.capacity() * sizeof(PatchSum) + averaged_.capacity() * sizeof(PatchFit) + crowding_.bytes();
   }
 
  private:
@@ -170,6 +174,8 @@ class ExplicitSolver final : public Solver<Dim> {
   static constexpr double largest_drift = 0.99;  // cells, of a particle since the last sort: the tiles' margin
   // Particles that pass through the stress update together: what is known of them fits into the first-level cache.
   static constexpr std::size_t few_particles = 128;
+  // 1, of a patch of 2^Dim cells: what a particle that flies alone, or with few others, fills of it at most.
+  static constexpr double lone_share = 0.25;
   // In 2-D a node's four lanes have room for the velocity's change over the step beside the velocity.
   static constexpr bool separate_change = Split && Dim == 3;
 
@@ -225,9 +231,10 @@ class ExplicitSolver final : public Solver<Dim> {
     return std::min({options_.courant * h_ / fastest_wave_ / std::sqrt(raised), options_.maximum_step,
                      viscous_limit_ / raised, limit});
   }
-  double flip_share(double dt) const {
-    return Transfer == TransferName::aflip ? 1.0 - std::min(1.0, options_.transfer_damping * dt * h1_ * fastest_wave_)
-                                           : options_.flip_share;
+  double flip_share(double dt, const MaterialConstants& k) const {
+    if (Transfer != TransferName::aflip) return options_.flip_share;
+    const double damping = k.phi_zero || k.flows ? options_.flow_transfer_damping : options_.transfer_damping;
+    return 1.0 - std::min(1.0, damping * dt * h1_ * fastest_wave_);
   }
   // Field f's node 0 of active block a in arrays by nodes, and its tiles.
   std::size_t node_of(int f, std::size_t a) const { return fields_.number(f, a) * block_nodes; }
@@ -275,6 +282,7 @@ class ExplicitSolver final : public Solver<Dim> {
   void remember_grip(const GripMemory<Dim>& memory);
   bool in_reach_of_body(std::size_t a, int n) const;
   bool is_solid(std::size_t a, int n) const;
+  double share_above(std::size_t a, int n) const;
   bool still(std::size_t a) const;
   template <class Load>
   bool sleeps_on(std::size_t b, const Vec4* tile, Load load, double dt);
@@ -318,6 +326,8 @@ class ExplicitSolver final : public Solver<Dim> {
   void average(bool sorted);
   void update_stresses(double dt);
   StressWork update_stresses_of(std::size_t b, double dt);
+  double relieve_lone(const MaterialConstants& k, std::size_t begin, std::size_t end,
+                      const std::array<double, Dim>& corner, const PatchFit* fit, double* trace, long& relieved);
   void particles_to_grid();
   void scatter_block(std::size_t b);
   void scatter_ground_gaps(std::size_t b);
@@ -347,6 +357,7 @@ class ExplicitSolver final : public Solver<Dim> {
   SurfaceExtension<Dim> extension_;
   SleepingBlocks<Dim> sleep_;
   PondedWater<Dim> water_;
+  Crowding<Dim> crowding_;
   double water_potential_ = 0.0;      // J, PondedWater::potential of all particles
   std::vector<double> water_levels_;  // m, for which that is
   bool averaging_ = false, leaving_ = false, starts_with_spin_ = false;
@@ -397,7 +408,7 @@ class ExplicitSolver final : public Solver<Dim> {
   std::array<double, Dim> impulse_{};
   std::vector<std::int32_t> removed_;
   std::vector<std::uint8_t> held_;  // by identity; empty unless the domain's sides hold particles
-  long sorts_ = 0;
+  long sorts_ = 0, relieved_ = 0;
 };
 
 }  // namespace tailrun::mpm

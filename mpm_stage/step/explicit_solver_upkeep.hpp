@@ -114,6 +114,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
   if (averaging_) {
     averaged_tiles_.resize(grid_.occupied() * tile_nodes);
     averaged_.resize(grid_.active() * block_nodes);
+    if (crowding_.active()) crowding_.lay_out(grid_, [this](std::size_t a, int n) { return share_above(a, n); });
   }
   if (ground_.any()) {
     gap_tiles_.resize(tiles_.size());
@@ -201,6 +202,16 @@ bool ExplicitSolver<Dim, Shape, Split, Transfer>::is_solid(std::size_t a, int n)
   return in_reach_of_body(a, n);
 }
 
+// Share of node n's shape function above the ground, as if that were plane there and the function a Gaussian of the
+// same width; none beyond a wall or in a body.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+double ExplicitSolver<Dim, Shape, Split, Transfer>::share_above(std::size_t a, int n) const {
+  const double variance = Shape::support / 12.0;  // cells squared, of a B-spline
+  const double above = ground_.of_block(a) ? ground_.distances(a)[n] * h1_ : 10.0;
+  if (above > 0.0 && is_solid(a, n)) return 0.0;
+  return 0.5 * (1.0 + std::erf(above / std::sqrt(2.0 * variance)));
+}
+
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 std::vector<SurfaceRole> ExplicitSolver<Dim, Shape, Split, Transfer>::surface_roles() const {
   std::vector<SurfaceRole> role(grid_.active() * block_nodes, SurfaceRole::any);
@@ -238,6 +249,7 @@ SolverState<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::state() const {
   s.fastest_wave = fastest_wave_;
   s.kinetic = kinetic_;
   s.sorts = sorts_;
+  s.relieved = relieved_;
   s.work = work_;
   s.seconds = seconds_;
   s.impulse = impulse_;
@@ -267,6 +279,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::resume(Particles<Dim> particle
   fastest_wave_ = s.fastest_wave;
   kinetic_ = s.kinetic;
   sorts_ = s.sorts;
+  relieved_ = s.relieved;
   work_ = s.work;
   seconds_ = s.seconds;
   impulse_ = s.impulse;
