@@ -34,11 +34,11 @@
 #include "mpm_stage/step/grid_update.hpp"
 #include "mpm_stage/step/sleeping_blocks.hpp"
 #include "mpm_stage/step/solver.hpp"
-#include "mpm_stage/transfer/crowding.hpp"
 #include "mpm_stage/transfer/grid_to_particles.hpp"
 #include "mpm_stage/transfer/interface_sums.hpp"
 #include "mpm_stage/transfer/mass_matrix.hpp"
 #include "mpm_stage/transfer/particles_to_grid.hpp"
+#include "mpm_stage/transfer/patch_filling.hpp"
 #include "mpm_stage/transfer/volumetric_projection.hpp"
 
 namespace tailrun::mpm {
@@ -63,7 +63,7 @@ class ExplicitSolver final : public Solver<Dim> {
         extension_(options.surface_share),
         sleep_(options.sleep),
         water_(options.ponds),
-        crowding_(0.0) {
+        filling_(options.crowding_relief) {
     double mass = 0.0;
     for (const double m : P_.mass) mass += m;
     mass_cutoff_ = (options.mass_cutoff < 0.0 ? Shape::mass_cutoff : options.mass_cutoff) * mass /
@@ -74,7 +74,6 @@ class ExplicitSolver final : public Solver<Dim> {
       constants_.back().averaged = constants_.back().averaged && options.volumetric_average;
       averaging_ = averaging_ || constants_.back().averaged;
     }
-    if (averaging_) crowding_ = Crowding<Dim>(options.crowding_relief);
     limit_volumes();
     if (walls.bounded && walls.leaving == LeavingParticles::wall) {
       std::int32_t most = 0;
@@ -164,7 +163,7 @@ class ExplicitSolver final : public Solver<Dim> {
   std::size_t grid_bytes() const override {
     return grid_.bytes() + (tiles_.capacity() + velocity_.capacity() + change_.capacity()) * sizeof(Vec4) +
            beside_.capacity() * sizeof(SplitNode<Dim>) + (term_.capacity() + products_.capacity()) * sizeof(Vec4) +
-           averaged_tiles_.capacity() * sizeof(PatchSum) + averaged_.capacity() * sizeof(PatchFit) + crowding_.bytes();
+           averaged_tiles_.capacity() * sizeof(PatchSum) + averaged_.capacity() * sizeof(PatchFit) + filling_.bytes();
   }
 
  private:
@@ -174,8 +173,6 @@ class ExplicitSolver final : public Solver<Dim> {
   static constexpr double largest_drift = 0.99;  // cells, of a particle since the last sort: the tiles' margin
   // Particles that pass through the stress update together: what is known of them fits into the first-level cache.
   static constexpr std::size_t few_particles = 128;
-  // 1, of a patch of 2^Dim cells: what a particle that flies alone, or with few others, fills of it at most.
-  static constexpr double lone_share = 0.25;
   // In 2-D a node's four lanes have room for the velocity's change over the step beside the velocity.
   static constexpr bool separate_change = Split && Dim == 3;
 
@@ -326,6 +323,8 @@ class ExplicitSolver final : public Solver<Dim> {
   void average(bool sorted);
   void update_stresses(double dt);
   StressWork update_stresses_of(std::size_t b, double dt);
+  double relax_lone(const MaterialConstants& k, std::size_t begin, std::size_t end,
+                    const std::array<double, Dim>& corner, const PatchFit* fit, double dt);
   double relieve_lone(const MaterialConstants& k, std::size_t begin, std::size_t end,
                       const std::array<double, Dim>& corner, const PatchFit* fit, double* trace, long& relieved);
   void particles_to_grid();
@@ -357,7 +356,7 @@ class ExplicitSolver final : public Solver<Dim> {
   SurfaceExtension<Dim> extension_;
   SleepingBlocks<Dim> sleep_;
   PondedWater<Dim> water_;
-  Crowding<Dim> crowding_;
+  PatchFilling<Dim> filling_;
   double water_potential_ = 0.0;      // J, PondedWater::potential of all particles
   std::vector<double> water_levels_;  // m, for which that is
   bool averaging_ = false, leaving_ = false, starts_with_spin_ = false;

@@ -132,12 +132,10 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::average(bool sorted) {
     PatchSum sum[block_nodes];
     gather_tiles<Dim, Shape>(grid_.tiles_around(a), averaged_tiles_.data(), sum);
     fit_patches<Dim>(sum, averaged_.data() + a * block_nodes);
-    if (crowding_.active()) crowding_.compare(a, sum);
+    filling_.compare(a, sum);
   }
-  if (crowding_.active()) {
 #pragma omp parallel for schedule(dynamic, 4)
-    for (std::size_t a = 0; a < grid_.active(); ++a) crowding_.judge(a, averaged_.data() + a * block_nodes);
-  }
+  for (std::size_t a = 0; a < grid_.active(); ++a) filling_.judge(a, averaged_.data() + a * block_nodes);
   add_time(seconds_.volumetric, since);
 }
 
@@ -184,9 +182,12 @@ StressWork ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses_of(std::
     }
     for (std::size_t begin = run.begin; begin < run.end; begin += few_particles) {
       const std::size_t end = std::min(run.end, begin + few_particles);
+      bool some_alone = false;
       if (k.averaged) {
-        work.crowding +=
-            gather_volumetric<Dim, Shape>(k, P_, begin, end, corner(b), h1_, fit, crowding_.relief(), trace);
+        const GatheredIncrements gathered =
+            gather_volumetric<Dim, Shape>(k, P_, begin, end, corner(b), h1_, fit, filling_.relief(), trace);
+        work.crowding += gathered.given;
+        some_alone = gathered.some_alone;
       } else {
         own_volumetric(P_, begin, end, trace);
       }
@@ -194,14 +195,32 @@ StressWork ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses_of(std::
       const StressWork done = update_stress(k, P_, begin, end, trace, dt);
       work.dissipated += done.dissipated;
       work.pore_pressure += done.pore_pressure;
+      if (some_alone) work.dissipated += relax_lone(k, begin, end, corner(b), fit, dt);
     }
   }
   return work;
 }
 
-// Particles with volumetric increments beyond all measure. One that flies alone has no neighbours that its gradient
-// could be of: it loses stress and affine velocity and flies on as a lump. Returns the elastic energy that goes with
-// them, J; not a number if one is among others.
+// A particle that flies alone has no neighbours to press on: what it takes for strain is its own breathing on the few
+// nodes around it, faster (up to 3.5 c / h) than the time step need follow elsewhere, so that it would grow. Its stress
+// goes in the time that a wave takes through a cell. Returns the elastic energy that goes with it, J.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+double ExplicitSolver<Dim, Shape, Split, Transfer>::relax_lone(const MaterialConstants& k, std::size_t begin,
+                                                               std::size_t end, const std::array<double, Dim>& corner,
+                                                               const PatchFit* fit, double dt) {
+  const double kept = std::exp(-2.0 * dt * h1_ * fastest_wave_);
+  double lost = 0.0;
+  for (std::size_t p = begin; p < end; ++p) {
+    if (!is_alone<Dim, Shape>(P_, p, corner, h1_, fit)) continue;
+    const double before = mpm::elastic_energy(k, P_, p, p + 1);
+    for (auto& column : P_.stress) column[p] *= kept;
+    lost += before - mpm::elastic_energy(k, P_, p, p + 1);
+  }
+  return lost;
+}
+
+// Particles with volumetric increments beyond all measure: those that fly alone (relax_lone) lose stress and affine
+// velocity and fly on as lumps. Returns the elastic energy that goes with them, J; not a number if one is among others.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 double ExplicitSolver<Dim, Shape, Split, Transfer>::relieve_lone(const MaterialConstants& k, std::size_t begin,
                                                                  std::size_t end, const std::array<double, Dim>& corner,
@@ -209,8 +228,7 @@ double ExplicitSolver<Dim, Shape, Split, Transfer>::relieve_lone(const MaterialC
   double lost = 0.0;
   for (std::size_t p = begin; p < end; ++p) {
     if (std::fabs(trace[p - begin]) < 1.0) continue;
-    if (!std::isfinite(trace[p - begin]) || !k.averaged ||
-        !(volume_in_patch<Dim, Shape>(P_, p, corner, h1_, fit) < lone_share * std::pow(2.0 * h_, Dim)))
+    if (!std::isfinite(trace[p - begin]) || !k.averaged || !is_alone<Dim, Shape>(P_, p, corner, h1_, fit))
       return std::nan("");
     lost += mpm::elastic_energy(k, P_, p, p + 1);
     trace[p - begin] = 0.0;

@@ -37,7 +37,8 @@ namespace tailrun::mpm {
 // and the mass of number 2; number 4, in 3-D, is a (X_1 X_2, X_2 X_0, 0, 0).
 using PatchSum = Vec4;
 // A patch's linear function: number 0 is the value at its centre and the slopes per cell, Pa; number 1 is the share of
-// the way to it that the particles go, the patch's crowding (crowding.hpp) and the volume of its particles.
+// the way to it that the particles go, the patch's crowding, and 1 where
+// particles fly alone (both: patch_filling.hpp).
 using PatchFit = Vec4;
 
 // What the elastic law has for changes of volume.
@@ -189,8 +190,7 @@ void fit_patches(const PatchSum* sum, PatchFit* fit) {
           out[1 + d] = slope[d];
         }
         const double allowed = most * s[patch_offset<B>(1)][3] * per_weight;
-        (&out)[patch_offset<B>(1)] = Vec4{rest > allowed * allowed ? allowed / std::sqrt(rest) : 1.0, 0.0,
-                                          s[patch_offset<B>(1)][3], 0.0};
+        (&out)[patch_offset<B>(1)] = Vec4{rest > allowed * allowed ? allowed / std::sqrt(rest) : 1.0, 0.0, 0.0, 0.0};
       }
 }
 
@@ -210,17 +210,22 @@ template <int Dim, class G>
   return root(squared);
 }
 
+struct GatheredIncrements {
+  double given = 0.0;   // J (per metre in plane strain), elastic energy that crowded particles got
+  bool some_alone = false;  // whether some of the particles fly alone
+};
+
 // `fit` is the tile of the patches' functions. increment[0 .. end - begin) is the volumetric increment e' for the
-// stress update; where patches are crowded, less `relief` of that per unit of shear strain. Returns the elastic energy
-// (J, per metre in plane strain) that the particles get by that.
+// stress update; where patches are crowded, less `relief` of that per unit of shear strain.
 template <int Dim, class Shape>
-double gather_volumetric(const MaterialConstants& material, const Particles<Dim>& P, std::size_t begin, std::size_t end,
+GatheredIncrements gather_volumetric(const MaterialConstants& material, const Particles<Dim>& P, std::size_t begin, std::size_t end,
                          const std::array<double, Dim>& corner, double h1, const PatchFit* fit, double relief,
-                         double* increment) {
+                                     double* increment) {
   constexpr int T = Tile<Dim, Shape>::side;
   constexpr double most = 0.01;  // of volumetric strain in a step
   const VolumetricLaw<Dim> law(material);
   Vec4 given = {};
+  Vec4 alone = {};
   for_each_group(
       begin, end, [&](const auto& g) __attribute__((always_inline)) {
         const InPatch<Dim, Shape> in(P, g, corner, h1);
@@ -246,18 +251,19 @@ double gather_volumetric(const MaterialConstants& material, const Particles<Dim>
           e -= d;
         }
         of_run.write(increment, e);
+        alone += Vec4{second[in.first[0]][2], second[in.first[1]][2], second[in.first[2]][2], second[in.first[3]][2]};
       });
-  return sum_of_lanes(given);
+  return {sum_of_lanes(given), sum_of_lanes(alone) > 0.0};
 }
 
-// m3 (m2 in plane strain), of all particles in the patch that particle p is in.
+// Whether particle p flies alone.
 template <int Dim, class Shape>
-double volume_in_patch(const Particles<Dim>& P, std::size_t p, const std::array<double, Dim>& corner, double h1,
-                       const PatchFit* fit) {
+bool is_alone(const Particles<Dim>& P, std::size_t p, const std::array<double, Dim>& corner, double h1,
+              const PatchFit* fit) {
   constexpr int T = Tile<Dim, Shape>::side;
   int first = 0;
   for (int d = Dim - 1; d >= 0; --d) first = first * T + 2 * static_cast<int>((P.position[d][p] - corner[d]) * h1 * 0.5);
-  return fit[first + patch_offset<T>(1)][2];
+  return fit[first + patch_offset<T>(1)][2] != 0.0;
 }
 
 // Where nothing is projected: the particles' own increments.
