@@ -13,13 +13,14 @@ import chain_files as chain
 import field_plot as fields
 import runout_plot as runout
 import style
+from palette import Palette
 
 
-def plot_handover(plt, first, view, output):
+def plot_handover(plt, first, view, palette, output):
     figure, axis = plt.subplots(figsize=(style.WIDTH, style.panel_height(view) + 0.6))
-    runout.draw_materials(figure, axis, first, view)
+    runout.draw_materials(figure, axis, first, view, palette)
     axis.set_title(f"particles at the hand-over, t = {first.time:g} s: {len(first.position)}, {first.size:.2f} m apart")
-    axis.legend(handles=runout.legend_handles(first), loc="upper center", bbox_to_anchor=(0.5, 0.0), borderaxespad=3.8, ncol=4)
+    palette.legend(axis, first)
     style.save(figure, output)
 
 
@@ -38,7 +39,7 @@ def plot_displacement(plt, first, last, view, output):
     style.save(figure, output)
 
 
-def plot_stages(plt, paths, view, output):
+def plot_stages(plt, paths, view, palette, output):
     """Four moments: hand-over, an eighth, a third and the end of the run."""
     last = len(paths) - 1
     chosen = sorted({0, max(1, last // 8), max(1, last // 3), last}) if last > 0 else [0]
@@ -48,11 +49,11 @@ def plot_stages(plt, paths, view, output):
     )
     for axis, index in zip(axes[:, 0], chosen):
         particles = chain.Particles(paths[index])
-        runout.draw_materials(figure, axis, particles, view)
+        runout.draw_materials(figure, axis, particles, view, palette)
         axis.set_xlabel("")
         axis.text(0.99, 0.94, f"t = {particles.time:g} s", transform=axis.transAxes, ha="right", va="top")
     axes[-1, 0].set_xlabel("x (m)")
-    axes[-1, 0].legend(handles=runout.legend_handles(particles), loc="upper center", bbox_to_anchor=(0.5, 0.0), borderaxespad=3.8, ncol=4)
+    palette.legend(axes[-1, 0], particles)
     style.save(figure, output)
 
 
@@ -119,10 +120,10 @@ def main():
     plt = style.pyplot()
     options = chain.plot_options(arguments.case)
     first, last, paths = runout.first_and_last(arguments.folder)
-    view = runout.runout_view(first, last, options)
-    plot_handover(plt, first, view, arguments.output / "handover.png")
+    view, palette = runout.runout_view(first, last, options), Palette(first)
+    plot_handover(plt, first, view, palette, arguments.output / "handover.png")
     plot_displacement(plt, first, last, view, arguments.output / "displacement_mpm.png")
-    plot_stages(plt, paths, view, arguments.output / "runout.png")
+    plot_stages(plt, paths, view, palette, arguments.output / "runout.png")
     front = chain.series(arguments.folder / "front.csv")
     if front is not None:
         plot_front(plt, front, first.time, arguments.output / "runout_front.png")

@@ -28,6 +28,32 @@ def suggestion(window):
     return (show(time), "s") if time is not None else (f"none: {window.get('reason', '-')}", "")
 
 
+def law_in_words(use):
+    """Model, percentile and factors of one entry of summary.json's residual_strength."""
+    law, factor = use.get("law") or {}, use.get("factor", 1.0)
+    model = law.get("model", "not known" if use["from"] == "hand-over" else use["from"])
+    said = [model + (f" (N {law['blow_count']:g})" if "blow_count" in law and model not in ("bins", "table", "ratio", "constant") else "")]
+    if "percentile" in law:
+        said.append(f"percentile {law['percentile']:g}")
+    if law.get("factor", 1.0) != 1.0:
+        said.append(f"factor {law['factor']:g} of the hand-over")
+    if factor != 1.0:
+        said.append(f"factor {factor:g}")
+    return ", ".join(said + (["chosen at the runout"] if use["from"] == "mpm.json" else []))
+
+
+def strengths(mpm):
+    """The strengths that the runout computed with, a row for each material and law."""
+    rows = []
+    for use in mpm.get("residual_strength", []):
+        found = use["strength_Pa"]
+        low, high = found["smallest"] / 1e3, found["largest"] / 1e3
+        value = show(low, 2) if low == high else f"{low:.2f} to {high:.2f}, mean {found['mean'] / 1e3:.2f}"
+        rows.append(("MPM", f"strength, {use['material'].replace('_', ' ')}", value, "kPa"))
+        rows.append(("MPM", "  its law", law_in_words(use), ""))
+    return rows
+
+
 def collect(results, phase):
     """Rows (stage, what, value, unit) from the summaries and series of a case; missing ones are left out."""
     rows = []
@@ -61,6 +87,7 @@ def collect(results, phase):
             ("MPM", "largest displacement", show(mpm.get("largest_displacement_m"), 1), "m"),
             ("MPM", "energy lost by the scheme", percent(mpm.get("energy", {}).get("lost_ratio")), "%"),
             ("MPM", "  not in transfer or impacts", percent(mpm.get("energy", {}).get("residual_ratio")), "%"),
+            *strengths(mpm),
             ("MPM", "wall time", show(mpm.get("wall_seconds", {}).get("total"), 1), "s"),
         ]
         if crest[0] is not None:

@@ -74,6 +74,33 @@ Json features(const Scene& scene) {
   return {{"chosen", chosen}, {"skipped", skipped}};
 }
 
+// Strengths that were computed with, and what gave them.
+Json strengths(const Scene& scene) {
+  Json list = Json::array();
+  for (const StrengthInUse& use : scene.strengths) {
+    const StrengthTally& t = use.found;
+    Json j = {{"material", use.material}, {"particles", t.count}, {"from", use.from}};
+    j["law"] = use.law;
+    j["factor"] = use.factor;
+    if (use.has_stress) j["initial_vertical_effective_stress_Pa"] = t.stress.json(t.count);
+    j["strength_Pa"] = t.strength.json(t.count);
+    if (use.from == "mpm.json") {
+      j["capped_by_drained_strength"] = t.capped;
+      j["raised_to_lower_bound"] = t.raised;
+      j["outside_of_domain"] = t.outside;
+    }
+    if (use.steps.size() <= StrengthInUse::most_steps)
+      for (const auto& [strength, step] : use.steps) {
+        Json s = {{"strength_Pa", strength}, {"particles", step.first}};
+        if (use.has_stress)
+          s["mean_initial_vertical_effective_stress_Pa"] = step.second / static_cast<double>(step.first);
+        j["steps"].push_back(s);
+      }
+    list.push_back(j);
+  }
+  return list;
+}
+
 // m, since the start of this run.
 template <int Dim>
 double largest_displacement(const Scene& scene, const Particles<Dim>& P) {
@@ -175,6 +202,7 @@ Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& reco
     }
     j["ponds"].push_back(said);
   }
+  if (!scene.strengths.empty()) j["residual_strength"] = strengths(scene);
   j["features"] = features(scene);
   j["remarks"] = scene.remarks;
   j["warnings"] = warnings();

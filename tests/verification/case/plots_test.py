@@ -16,10 +16,37 @@ sys.path.insert(0, str(source / "cases"))
 import case_part  # noqa: E402
 import chain_files  # noqa: E402
 import style  # noqa: E402
+from palette import Palette  # noqa: E402
 
 assert [style.nice_limit(x) for x in (0.9, 1.0, 1.3, 4.2, 7.0, 130.0)] == [1.0, 1.0, 2.0, 5.0, 10.0, 200.0]
-colours = style.material_colours(["liquefied_1", "liquefied_2", "tailings", "embankment", "other"])
-assert len(set(colours.values())) == 5, colours
+
+
+class Soil:
+    """Six particles: two of tailings, four of liquefied soil."""
+
+    def __init__(self, strength):
+        self.material_names = ["liquefied", "tailings"]
+        self.position = np.zeros((6, 2))
+        self.data = {"material_id": np.array([1, 1, 0, 0, 0, 0]), "residual_strength": np.array(strength)}
+
+    def material(self):
+        return self.data["material_id"]
+
+
+# Few strengths have a colour each, and the legend says the strength that the frame carries.
+soil = Soil([0.0, 0.0, 1600.0, 1600.0, 2660.0, 4550.0])
+palette = Palette(soil)
+colours = palette.colours(soil)
+assert len(set(colours)) == 4 and colours[2] == colours[3] and colours[0] == style.region_colour("tailings"), colours
+labels = [label for label, _ in palette.labels(soil)]
+assert labels == ["liquefied, $s_R$ 1.6 kPa", "liquefied, $s_R$ 2.66 kPa", "liquefied, $s_R$ 4.55 kPa", "tailings"], labels
+assert [colour for _, colour in palette.labels(soil)][:3] == [colours[2], colours[4], colours[5]]
+# Many are put into classes of the same number, and nothing falls between them.
+many = Soil([0.0, 0.0, 1.0, 1.0, 1.0, 1.0])
+many.position, many.data = np.zeros((1000, 2)), {"material_id": np.zeros(1000, int), "residual_strength": np.linspace(1e3, 9e3, 1000)}
+classes = Palette(many).classes(many)
+assert np.bincount(classes).tolist() == [200] * 5 and (np.diff(classes) >= 0).all(), np.bincount(classes)
+assert Palette(many).labels(many)[0][0] == "liquefied, $s_R$ 1 to 2.59 kPa", Palette(many).labels(many)
 
 case = case_part.without_comments('{"a": "http://b", /* c */ "d": 1 // "e"\n, "f\\"//": [2]}')
 assert case_part.json.loads(case) == {"a": "http://b", "d": 1, 'f"//': [2]}, case
