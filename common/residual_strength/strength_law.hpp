@@ -63,7 +63,8 @@ StrengthLaw read_strength_law(const CaseNode& node);
 // The same keys but "factor" (whoever reads them again has a factor of its own, on top), all optional: what is not
 // given is the kept law's. Of another model the kept law gives what does not depend on the model: percentile, bounds,
 // blow_count and fines_content (with a warning where models mean different counts by it), cone_resistance if both mean
-// the same; not its factor. A law of the same model with nothing given is the same to the last bit. Throws InputError.
-StrengthLaw read_changed_strength_law(const CaseNode& node, const KeptStrengthLaw& kept);
+// the same; not its factor. A law of the same model with nothing given is the same to the last bit. A `model` that is
+// not empty takes the place of "model". Throws InputError.
+StrengthLaw read_changed_strength_law(const CaseNode& node, const KeptStrengthLaw& kept, const std::string& model = {});
 
 }  // namespace tailrun

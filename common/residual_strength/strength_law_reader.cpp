@@ -116,9 +116,9 @@ class Inputs {
   const Json* kept_value(const std::string& key) const {
     const Json* found = kept_ ? find_kept(key) : nullptr;
     if (!found || kept_model_ == law_.model) return found;
-    static const std::vector<std::string> of_no_model = {"percentile",      "blow_count",     "fines_content",
-                                                         "drained_cap",     "friction_angle", "minimum_ratio",
-                                                         "minimum_strength"};
+    static const std::vector<std::string> of_no_model = {"percentile",          "blow_count",      "fines_content",
+                                                         "void_redistribution", "drained_cap",     "friction_angle",
+                                                         "minimum_ratio",       "minimum_strength"};
     if (key == "cone_resistance") {
       const std::string then = meanings_of(kept_model_).cone_resistance, now = meanings_of(law_.model).cone_resistance;
       return then.empty() || then == now ? found : nullptr;
@@ -329,16 +329,18 @@ StrengthLaw read_strength_law(const CaseNode& node) {
   return law;
 }
 
-StrengthLaw read_changed_strength_law(const CaseNode& node, const KeptStrengthLaw& kept) {
+StrengthLaw read_changed_strength_law(const CaseNode& node, const KeptStrengthLaw& kept, const std::string& model) {
   StrengthLaw law;
   Inputs in(node, law, &kept);
   const auto& models = strength_models();
-  if (in.kept_model().empty() && !node.has("model"))
+  if (model.empty() && in.kept_model().empty() && !node.has("model"))
     node.fail("model", fmt::format("missing: {}. Allowed is one of {}", kept.place, joined(models)));
   if (!in.kept_model().empty() && std::find(models.begin(), models.end(), in.kept_model()) == models.end())
     throw InputError(
         fmt::format("{}: model '{}' is not known; known are {}", kept.place, in.kept_model(), joined(models)));
-  law.model = in.kept_model().empty() ? node.choice("model", models) : node.choice_or("model", models, in.kept_model());
+  law.model = !model.empty()            ? model
+              : in.kept_model().empty() ? node.choice("model", models)
+                                        : node.choice_or("model", models, in.kept_model());
   law.record["model"] = law.model;
   law.domain = {0.0, stress_of_case_histories};
   read_model(in, law);
