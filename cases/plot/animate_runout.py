@@ -14,6 +14,7 @@ import field_plot as fields
 import runout_plot as runout
 import style
 from palette import Palette
+from runout_marks import Marks
 
 
 def main():
@@ -33,6 +34,7 @@ def main():
     figure.subplots_adjust(left=0.07, right=0.99, top=0.93, bottom=0.36)
     palette = Palette(first)
     dots = runout.draw_materials(figure, axis, first, view, palette)
+    Marks(first, arguments.folder).draw_ground(axis)
     palette.legend(axis, first)
 
     output = arguments.output

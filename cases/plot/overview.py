@@ -7,7 +7,7 @@ import style
 from palette import Palette
 
 
-def plot_overview(plt, snapshot, first, last, options, output):
+def plot_overview(plt, snapshot, first, last, marks, options, output):
     view = runout.runout_view(first, last, options)
     view = [view[0], view[1], view[2], max(view[3], fields.dam_view(snapshot, options)[3])]
     palette = Palette(first)
@@ -22,6 +22,7 @@ def plot_overview(plt, snapshot, first, last, options, output):
     ):
         runout.draw_materials(figure, axis, particles, view, palette)
         axis.set_title(title, loc="left")
+    marks.draw(axes[2], last.time, view)
     for axis in axes[:2]:
         axis.set_xlabel("")
     palette.legend(axes[2], first)

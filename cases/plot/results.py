@@ -10,10 +10,6 @@ def at_time(table, column, time):
     return float(table[column][abs(table["time_s"] - time).argmin()])
 
 
-def first_last(table, column):
-    return (float(table[column][0]), float(table[column][-1])) if table is not None and column in table else (None, None)
-
-
 def show(value, digits=2):
     return "-" if value is None else f"{value:.{digits}f}" if isinstance(value, float) else str(value)
 
@@ -54,6 +50,22 @@ def strengths(mpm):
     return rows
 
 
+def runout(mpm):
+    """Runout from the toe and freeboard lost, as mpm_stage defines them (docs/mpm.md)."""
+    if "initial_toe_m" not in mpm:
+        return []
+    body = mpm["runout_quantiles"][1]
+    before, after = mpm.get("ground_before_m"), mpm.get("ground_after_m")
+    said = f"{show(mpm.get('freeboard_lost_m'))}" + (f" ({before:.1f} to {after:.1f})" if None not in (before, after) else "")
+    return [
+        ("MPM", "toe before the motion, x", show(mpm["initial_toe_m"], 1), "m"),
+        ("MPM", "runout from that toe", show(mpm.get("runout_m"), 1), "m"),
+        ("MPM", f"  of {100.0 * body:g} % of what flowed", show(mpm.get("runout_of_body_m"), 1), "m"),
+        ("MPM", "  without gaps", show(mpm.get("coherent_runout_m"), 1), "m"),
+        ("MPM", "freeboard lost", said, "m"),
+    ]
+
+
 def collect(results, phase):
     """Rows (stage, what, value, unit) from the summaries and series of a case; missing ones are left out."""
     rows = []
@@ -74,9 +86,7 @@ def collect(results, phase):
             ("FEM", "wall time", show(fem.get("seconds", {}).get("total"), 1), "s"),
         ]
     mpm = chain.summary(phase / "mpm" / "summary.json")
-    front = chain.series(phase / "mpm" / "front.csv")
     if mpm:
-        crest = first_last(front, "crest_y_m")
         rows += [
             ("MPM", "particles", str(mpm.get("particles", "-")), ""),
             ("MPM", "time simulated", show(mpm.get("simulated_time_s"), 1), "s"),
@@ -84,14 +94,13 @@ def collect(results, phase):
             ("MPM", "front of all soil, x", show(mpm.get("robust_front_position_m"), 1), "m"),
             ("MPM", "front of what flowed, x", show(mpm.get("flow_front_position_m"), 1), "m"),
             ("MPM", "mass that flowed, per m of dam", show(mpm.get("flowed_mass_kg", 0.0) / 1e3, 0), "t"),
+            *runout(mpm),
             ("MPM", "largest displacement", show(mpm.get("largest_displacement_m"), 1), "m"),
             ("MPM", "energy lost by the scheme", percent(mpm.get("energy", {}).get("lost_ratio")), "%"),
             ("MPM", "  not in transfer or impacts", percent(mpm.get("energy", {}).get("residual_ratio")), "%"),
             *strengths(mpm),
             ("MPM", "wall time", show(mpm.get("wall_seconds", {}).get("total"), 1), "s"),
         ]
-        if crest[0] is not None:
-            rows.insert(-3, ("MPM", "crest sinks by", show(crest[0] - crest[1] + 0.0), "m"))
     geostatic = chain.summary(results / "fem" / "geostatic.json")
     for stage, summaries in (("FEM", (mesh, geostatic, fem)), ("MPM", (mpm,))):
         told = [text for summary in summaries if summary for text in summary.get("warnings", [])]

@@ -77,7 +77,7 @@ def plot(plt, curves, particles, output):
         for _, material, relation, percentile, chosen, points in own:
             if chosen:
                 words = relation.replace("_", " ") + (f", {percentile:g} %" if percentile is not None else "")
-                axis.plot(*points, color="k", lw=2.4, label=f"the case's own: {words}")
+                axis.plot(*points, color="k", lw=2.4, drawstyle="steps-mid" if relation == "bins" else "default", label=f"the case's own: {words}")
                 axis.set_title(f"rule {rule}, {material.replace('_', ' ')}: residual strength")
         axis.set(xlim=(0.0, limit), ylim=(0.0, None), xlabel="$\\sigma'_{v0}$ (kPa)", ylabel="$s_R$ (kPa)")
         axis.grid(alpha=0.3)

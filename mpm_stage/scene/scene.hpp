@@ -37,7 +37,10 @@ struct OutputOptions {
   int front_axis = 0;             // coordinate along which the front runs
   double front_sign = 1.0;        // +1: towards larger coordinates
   double front_quantile = 0.999;  // 1, share of the moving mass behind the robust front
+  double body_quantile = 0.9;     // 1, the same of the flow's body
   double flow_distance = 1.0;     // m, what has moved farther than this counts as flowed
+  std::optional<double> toe;      // m, where the dam ended before the motion; unless given the outermost moving soil
+  std::optional<std::array<double, 2>> footprint;  // m, of the dam along the flow; unless given from crest to toe
   std::vector<TrackedPoint> points;
 };
 

@@ -119,6 +119,14 @@ void read_output(const CaseNode& root, Scene& scene) {
   if (o.front_axis >= scene.dimension) node.fail("front_direction", "z needs dimension 3");
   o.flow_distance = node.number_or("flow_distance", "m", Range::positive(), o.flow_distance);
   o.front_quantile = node.number_or("front_quantile", "1", Range::between(0.5, 1.0), o.front_quantile);
+  o.body_quantile = node.number_or("body_quantile", "1", Range::between(0.5, o.front_quantile),
+                                   std::min(o.body_quantile, o.front_quantile));
+  o.toe = node.number_if("toe", "m", Range::any());
+  if (node.has("footprint")) {
+    const auto ends = node.numbers("footprint", "m", Range::any(), 2);
+    if (!(ends[0] < ends[1])) node.fail("footprint", "the first number must be below the second");
+    o.footprint = {ends[0], ends[1]};
+  }
   for (const CaseNode& point : node.list_or_empty("points")) {
     const auto x = point.numbers("position", "m", Range::any(), 2);
     o.points.push_back({point.text("name"), {x[0], x[1]}});
