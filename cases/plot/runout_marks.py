@@ -58,14 +58,18 @@ class Marks:
         if self.toe is None or not self.along_x:
             return
         base = self.y[np.abs(self.x - self.toe).argmin()]
-        height = view[3] - view[2]
-        low, text = base - 0.13 * height, {"fontsize": 8, "ha": "center", "va": "top"}
-        axis.annotate("", (self.toe, base), (self.toe, low), arrowprops={"arrowstyle": "-|>", "color": TOE, "lw": 1.0})
-        axis.text(self.toe, low, "toe before", color=TOE, **text)
+        self.draw_mark(axis, self.toe, base, view, 0.93, TOE, "toe before")
         front = self.front_at(time)
-        if front is None:
-            return
-        # The words stand beside the toe's where the front has not gone far from it.
-        lower = low - (0.11 * height if abs(front - self.toe) < 0.12 * (view[1] - view[0]) else 0.0)
-        axis.annotate("", (front, base), (front, lower), arrowprops={"arrowstyle": "-|>", "color": FRONT, "lw": 1.0})
-        axis.text(front, lower, f"front, runout {self.sign * (front - self.toe):.1f} m", color=FRONT, **text)
+        if front is not None:
+            runout = self.sign * (front - self.toe)
+            words = f"runout {runout:.1f} m" if runout >= 0.0 else f"{-runout:.1f} m short of it"
+            self.draw_mark(axis, front, base, view, 0.76, FRONT, f"front, {words}")
+
+    @staticmethod
+    def draw_mark(axis, x, base, view, level, colour, words):
+        """A line from the ground up to its words at a share `level` of the panel's height."""
+        top = view[2] + level * (view[3] - view[2])
+        left = x > view[0] + 0.75 * (view[1] - view[0])
+        axis.plot([x, x], [base, top], color=colour, lw=0.9)
+        axis.annotate(words, (x, top), xytext=(-4 if left else 4, 0), textcoords="offset points", color=colour, fontsize=9,
+                      ha="right" if left else "left", va="top")
