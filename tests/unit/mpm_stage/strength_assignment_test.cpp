@@ -150,3 +150,9 @@ TEST_CASE("stresses beyond the case histories are warned about where the law is 
   REQUIRE(warnings().size() > before);
   CHECK(warnings().back().find("1 of 3 points have sigma'_v0 outside") != std::string::npos);
 }
+
+TEST_CASE("bins that were materials of their own in an earlier version are told what became of them") {
+  ParticleSet p = four_particles(weber);
+  p.material_names = {"liquefied_2", "rock"};
+  CHECK(message("{}", p).find("make the hand-over again and they are all 'liquefied'") != std::string::npos);
+}
