@@ -100,7 +100,7 @@ const FrontRow& FrontSeries<Dim>::sample(double time, const Particles<Dim>& P) {
   put_foremost_first(flowed_);
   row.flow_front = output_.front_sign * quantile_front(flowed_, output_.front_quantile);
   row.flow_body = output_.front_sign * quantile_front(flowed_, output_.body_quantile);
-  row.coherent_front = output_.front_sign * coherent_front(scratch_, flowed_, cell_size_);
+  row.coherent_front = output_.front_sign * coherent_front(scratch_, flowed_, coherent_gap * cell_size_);
   row.ground = (*ground_)(P.count(), [&P](std::size_t p, int d) { return P.position[d][p]; });
   if (!scratch_.empty()) {
     row.robust_front = output_.front_sign * quantile_front(scratch_, output_.front_quantile);

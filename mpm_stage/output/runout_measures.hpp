@@ -26,6 +26,9 @@ double outermost(const std::vector<double>& positions, const std::vector<bool>& 
 std::array<double, 2> footprint_of(const std::vector<double>& positions, const std::vector<bool>& moving, int axis,
                                    double sign, double toe);
 
+// Cells: particles up to two cells apart always share a node of quadratic splines, so that one body is what they are.
+constexpr double coherent_gap = 2.0;
+
 // A particle ahead of others: its coordinate in the direction of the flow (m, larger is farther) and its mass (kg).
 using Ahead = std::vector<std::pair<double, double>>;
 
@@ -37,8 +40,7 @@ void put_foremost_first(Ahead& particles, double quantile = 0.0);
 double quantile_front(const Ahead& particles, double quantile);
 
 // m: the outermost of `flowed` (foremost first) that is reached from the middle of their mass outwards without a gap of
-// more than `gap` (m, a cell: what is farther apart shares no node) between particles of `all`. NaN when none has
-// flowed.
+// more than `gap` (m) between particles of `all`. NaN when none has flowed.
 double coherent_front(const Ahead& all, const Ahead& flowed, double gap);
 
 // m: the highest ground over footprint[0..1] along `axis`. In each column, a cell wide, the ground reaches up from the

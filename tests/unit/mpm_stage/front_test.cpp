@@ -101,7 +101,7 @@ TEST_CASE("quantiles are of the mass that flowed") {
   CHECK(std::isnan(quantile_front({}, 0.5)));
 }
 
-TEST_CASE("the coherent front ends at the first gap of more than a cell; standing soil bridges one") {
+TEST_CASE("the coherent front ends at the first gap; standing soil bridges one") {
   const Ahead flowed = {{900.0, 1.0}, {13.0, 1.0}, {12.2, 1.0}, {8.5, 1.0},
                         {8.0, 1.0},   {7.5, 1.0},  {7.0, 1.0},  {6.0, 1.0}};
   CHECK(coherent_front(flowed, flowed, 1.0) == doctest::Approx(8.5));
