@@ -57,13 +57,14 @@ def runout(mpm):
     body = mpm["runout_quantiles"][1]
     before, after = mpm.get("ground_before_m"), mpm.get("ground_after_m")
     said = f"{show(mpm.get('freeboard_lost_m'))}" + (f" ({before:.1f} to {after:.1f})" if None not in (before, after) else "")
-    return [
-        ("MPM", "toe before the motion, x", show(mpm["initial_toe_m"], 1), "m"),
+    ran = [
         ("MPM", "runout from that toe", show(mpm.get("runout_m"), 1), "m"),
         ("MPM", f"  of {100.0 * body:g} % of what flowed", show(mpm.get("runout_of_body_m"), 1), "m"),
         ("MPM", "  without gaps", show(mpm.get("coherent_runout_m"), 1), "m"),
-        ("MPM", "freeboard lost", said, "m"),
     ]
+    if mpm.get("runout_m") is None:
+        ran = [("MPM", "runout from that toe", f"none, nothing moved by more than {mpm['flow_distance_m']:g} m", "")]
+    return [("MPM", "toe before the motion, x", show(mpm["initial_toe_m"], 1), "m"), *ran, ("MPM", "freeboard lost", said, "m")]
 
 
 def collect(results, phase):
