@@ -1,0 +1,86 @@
+"""Where the soil of a plane runout ends: ground surface and depth of what flowed, over x, from the first and last frame."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+import paths  # noqa: F401
+import chain_files as chain
+
+FLOW_DISTANCE = 1.0  # m; mpm.json's output/flow_distance when it says nothing
+COLUMNS = {"x_m": ("x", "m", "middle of the column"),
+           "initial_surface_m": ("initial_surface", "m", "highest soil at the hand-over"),
+           "surface_m": ("surface", "m", "highest soil at the end"),
+           "bed_m": ("bed", "m", "the ground that soil flows over, where it is no soil itself"),
+           "flow_depth_m": ("depth", "m", "volume of the soil that moved farther than flow_distance, over the column's width")}
+
+
+@dataclass
+class Flow:
+    """Columns of soil of equal width: all arrays have one value a column; NaN where there is no soil."""
+
+    x: np.ndarray  # m
+    initial_surface: np.ndarray  # m
+    surface: np.ndarray  # m
+    bed: np.ndarray  # m
+    depth: np.ndarray  # m
+    width: float  # m
+    released_volume: float  # m3 per metre of dam
+    terrain: dict  # name -> (k, 2) m
+
+
+def highest(column, y, count):
+    surface = np.full(count, -np.inf)
+    np.maximum.at(surface, column, y)
+    return np.where(np.isfinite(surface), surface, np.nan)
+
+
+def ground(terrain, x):
+    """Height (m) of the terrain's lines at x, the highest of them; walls, which are upright, are none."""
+    height = np.full(len(x), np.nan)
+    for line in terrain.values():
+        order = np.argsort(line[:, 0], kind="stable")
+        if np.ptp(line[:, 0]) > 1e-9:
+            height = np.fmax(height, np.interp(x, line[order, 0], line[order, 1], np.nan, np.nan))
+    return height
+
+
+def of_particles(first, last, flow_distance=FLOW_DISTANCE):
+    """Flow between two sets of particles (chain_files.Particles). Columns are two particles wide and begin at whole
+    multiples of their width, so that runs of the same size share them. Particles that have left count nowhere; where some
+    have, what moved is told by the displacement since the start of the motion."""
+    width = 2.0 * first.size
+    moved = last.data["displacement"][:, :2].copy()
+    if len(first.position) == len(last.position):
+        moved -= first.data["displacement"][:, :2]
+    flowed = np.hypot(moved[:, 0], moved[:, 1]) > flow_distance
+    edge = [np.floor(p.position[:, 0] / width).astype(int) for p in (first, last)]
+    begin = min(e.min() for e in edge)
+    count = max(e.max() for e in edge) - begin + 1
+    half = 0.5 * first.size
+    volume = last.data["volume"]
+    depth = np.bincount(edge[1][flowed] - begin, volume[flowed], count) / width
+    x = (begin + np.arange(count) + 0.5) * width
+    return Flow(x, highest(edge[0] - begin, first.position[:, 1] + half, count), highest(edge[1] - begin, last.position[:, 1] + half, count),
+                ground(last.terrain, x), depth, width, float(volume[flowed].sum()), last.terrain)
+
+
+def of_frames(folder, flow_distance=FLOW_DISTANCE):
+    """Flow of a results' folder of mpm_stage; None without frames and in three dimensions."""
+    folder = Path(folder)
+    if not list(folder.glob("frames/*.series")):
+        return None
+    frames = chain.frames(folder)
+    first, last = chain.Particles(frames[0]), chain.Particles(frames[-1])
+    if "displacement" not in last.data or last.data["effective_stress"].shape[1] != 4:
+        return None
+    return of_particles(first, last, flow_distance)
+
+
+def write(path, flow):
+    """CSV of a Flow; empty where there is no soil."""
+    columns = [getattr(flow, field) for field, _, _ in COLUMNS.values()]
+    lines = [",".join(COLUMNS)]
+    lines += [",".join("" if np.isnan(value) else f"{value:.6g}" for value in row) for row in zip(*columns)]
+    Path(path).write_text("\n".join(lines) + "\n")
