@@ -28,6 +28,8 @@ def shown(value):
     """A value of a case file in a table."""
     if isinstance(value, float):
         return f"{value:.10g}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(shown, value))}]"
     return "-" if value is None else value if isinstance(value, str) else json.dumps(value)
 
 
@@ -43,6 +45,7 @@ def numbers_table(runs):
         signs = ["+" if change is not None and change > 0 else "" for change in changes]
         rows.append([headline.label, headline.display_unit, *map(headline.display, values),
                      *(sign + headline.display(change) for sign, change in zip(signs, changes))])
+    rows.append(["ended", "", *(run.ended or "-" for run in runs), *([""] * (len(runs) - 1))])
     return header, rows
 
 

@@ -32,9 +32,8 @@ def draw_profiles(axes, runs, shades):
     low, high = window(runs)
     first = next(run.flow for run in runs if run.flow is not None)
     axes[0].plot(first.x, first.initial_surface, color="0.5", lw=1.0, ls="--", label=f"at the hand-over ({next(r.name for r in runs if r.flow is not None)})")
-    for name, line in first.terrain.items():
-        if abs(line[-1, 0] - line[0, 0]) > 1e-9:
-            axes[0].plot(line[:, 0], line[:, 1], color="0.3", lw=1.5, label=name)
+    longest = max((run.flow for run in runs if run.flow is not None), key=lambda flow: len(flow.x))
+    axes[0].plot(longest.x, longest.bed, color="#8b6b4a", lw=1.5, label="bed")
     for run, shade in zip(runs, shades):
         if run.flow is not None:
             axes[0].plot(run.flow.x, run.flow.surface, color=shade, lw=1.4, label=run.name)

@@ -47,10 +47,12 @@ def gather(folder):
     header, rows = statistics(table)
     told = [f"member {', '.join(map(str, numbers))}: {stage}: {reason} (all that it said: {log})" for numbers, stage, reason, log in failures(table)]
     count = f"{done} of {len(table.state)} members done" + (f", {failed} failed" if failed else "") + (f", {missing} missing" if missing else "")
+    moving = sum(content.get("stop_reason") == "end time" for content in table.content)
+    end = [f"{moving} of {done} members ran until time/end of mpm.json without coming to rest: their numbers are of that moment."] if moving else []
     title = table.plan["title"] or f"{Path(table.plan['case']).name}: {folder.name}"
     parameters = [[p["name"], ", ".join(p["keys"]) + (" (scaled)" if p["scales"] else ""), members.text_of(p["base"])[:80]] for p in table.parameters]
     page.write(folder / "sweep.html", title, [
-        page.paragraph(f"{count}. Design: {table.plan['design']}, seed {table.plan['seed']}."),
+        *map(page.paragraph, [f"{count}. Design: {table.plan['design']}, seed {table.plan['seed']}.", *end]),
         page.table(["parameter", "key", "base run's value"], parameters), page.heading("Over the members"), page.table(header, rows),
         *(page.picture(folder / name, caption) for name, caption in made), *map(page.paragraph, told)])
     widths = [max(len(row[k]) for row in [header, *rows]) for k in range(len(header))]
@@ -58,6 +60,8 @@ def gather(folder):
         print("  " + "  ".join(f"{cell:{'<' if k < 1 else '>'}{widths[k]}}" for k, cell in enumerate(row)).rstrip())
     for name in ("sweep.html", *(name for name, _ in made), "members.csv", "members.h5"):
         print(f"  {folder / name}")
+    for text in end:
+        print(f"  {text}")
     print(f"{folder}: {count}", flush=True)
     for text in told:
         print(f"  {text}", file=sys.stderr)

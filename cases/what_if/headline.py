@@ -34,6 +34,7 @@ class Headline:
         return self.shown or self.unit
 
 
+MEASURE = 1  # to be raised when a number or the profile is measured in another way: members of sweeps are then computed anew
 FEM, MPM, FLOW = "fem/summary.json", "mpm/summary.json", "flow"
 HEADLINES = (
     Headline("runout_m", "runout", "m", ((MPM, "runout_m"),)),

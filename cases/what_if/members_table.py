@@ -35,28 +35,36 @@ class Table:
         return self.plan["parameters"]
 
 
+def on_columns(table, x):
+    """The profile's columns at x; a member of another size of particles is interpolated."""
+    if len(table["x_m"]) > 1 and np.isclose(np.diff(table["x_m"][:2]), x[1] - x[0]):
+        where = np.round((table["x_m"] - x[0]) / (x[1] - x[0])).astype(int)
+        found = {name: np.full(len(x), np.nan) for name in table}
+        for name, values in table.items():
+            found[name][where] = values
+        return found
+    return {name: np.interp(x, table["x_m"], values, np.nan, np.nan) for name, values in table.items()}
+
+
 def profiles_of(folders):
-    """Profiles of members over one x (m): arrays (members, columns). Where a member has no soil its surface is the bed (NaN without
-    one) and its depth 0; members without a profile are NaN throughout."""
+    """Profiles of members over one x (m), the columns of the widest: arrays (members, columns). Where a member has no soil its surface
+    is the bed (NaN without one) and its depth 0; members without a profile are NaN throughout."""
     tables = [series(folder / "profile.csv") if folder else None for folder in folders]
     given = [table for table in tables if table is not None]
     if not given:
         return {}
-    width = min(np.diff(table["x_m"]).min() for table in given if len(table["x_m"]) > 1)
-    place = [None if table is None else np.round(table["x_m"] / width - 0.5).astype(int) for table in tables]
-    low, high = min(p.min() for p in place if p is not None), max(p.max() for p in place if p is not None)
+    width = max(np.diff(table["x_m"][:2]).max(initial=0.0) for table in given) or 1.0
+    low = int(np.round(min(table["x_m"].min() for table in given) / width - 0.5))
+    high = max(int(np.round(max(table["x_m"].max() for table in given) / width - 0.5)), low + 1)
     x = (np.arange(low, high + 1) + 0.5) * width
-    found = {"x": x, "bed": np.full(len(x), np.nan)}
-    for table, where in zip(tables, place):
-        if table is not None:
-            found["bed"][where - low] = np.fmax(found["bed"][where - low], table["bed_m"])
-    for name, column in (("surface", "surface_m"), ("initial_surface", "initial_surface_m"), ("depth", "flow_depth_m")):
-        rows = np.full((len(tables), len(x)), np.nan)
-        for row, table, where in zip(rows, tables, place):
-            if table is not None:
-                row[:] = 0.0 if name == "depth" else found["bed"]
-                row[where - low] = table[column] if name == "depth" else np.where(np.isnan(table[column]), found["bed"][where - low], table[column])
-        found[name] = rows
+    columns = [None if table is None else on_columns(table, x) for table in tables]
+    bed = np.full(len(x), np.nan)
+    for own in columns:
+        if own is not None:
+            bed = np.fmax(bed, own["bed_m"])
+    found = {"x": x, "bed": bed}
+    for name, column, without in (("surface", "surface_m", bed), ("initial_surface", "initial_surface_m", bed), ("depth", "flow_depth_m", np.zeros(len(x)))):
+        found[name] = np.array([np.full(len(x), np.nan) if own is None else np.where(np.isnan(own[column]), without, own[column]) for own in columns])
     return found
 
 

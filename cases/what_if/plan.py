@@ -13,6 +13,7 @@ import paths  # noqa: F401
 import design as designs
 import named
 from case_part import read_case
+from headline import MEASURE
 from settings import STAGES as CASE_FILES
 from stage import read_json, results_of
 from stages import Chain
@@ -75,7 +76,8 @@ def members_of(design, base):
 
 
 def is_done(store, key):
-    return (folder_of(store, "mpm", key) / "member.json").exists()
+    """Whether the member's numbers are there, measured as headline.py measures now."""
+    return (read_json(folder_of(store, "mpm", key) / "member.json") or {}).get("measure") == MEASURE
 
 
 def tidy(store, key):
@@ -132,7 +134,7 @@ def forget_failures(units, store):
 def outcome(member, store):
     """(state, content): done with member.json's content, failed with failed.json's, missing."""
     content = read_json(folder_of(store, "mpm", member["keys"]["mpm"]) / "member.json")
-    if content is not None:
+    if content is not None and content.get("measure") == MEASURE:
         return "done", content
     for stage, key in member["keys"].items():
         content = read_json(folder_of(store, stage, key) / "failed.json")

@@ -27,7 +27,14 @@ class Flow:
     depth: np.ndarray  # m
     width: float  # m
     released_volume: float  # m3 per metre of dam
-    terrain: dict  # name -> (k, 2) m
+
+
+def column_width(particle_size):
+    """m; the nearest to four particles of 1, 1.5, 2, 3, 4, 6, 8 times a power of ten, so that it is the same for runs whose particles are
+    nearly of one size."""
+    wanted = 4.0 * particle_size
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(min((step * power for step in (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0)), key=lambda width: abs(np.log(width / wanted))))
 
 
 def highest(column, y, count):
@@ -37,20 +44,30 @@ def highest(column, y, count):
 
 
 def ground(terrain, x):
-    """Height (m) of the terrain's lines at x, the highest of them; walls, which are upright, are none."""
+    """Height (m) of the terrain's lines at x, the highest of them; walls, which are upright or nearly so, are none."""
     height = np.full(len(x), np.nan)
     for line in terrain.values():
         order = np.argsort(line[:, 0], kind="stable")
-        if np.ptp(line[:, 0]) > 1e-9:
+        if np.ptp(line[:, 0]) > 0.2 * np.ptp(line[:, 1]):
             height = np.fmax(height, np.interp(x, line[order, 0], line[order, 1], np.nan, np.nan))
     return height
 
 
+def shared_out(place, amount, half, count):
+    """Sum of amounts by column: place in units of columns, each amount spread evenly over place -+ half."""
+    low, high = place - half, place + half
+    first = np.floor(low).astype(int)
+    ahead = np.clip((high - (first + 1)) / (2.0 * half), 0.0, 1.0)  # share in the next column
+    total = np.bincount(np.clip(first, 0, count - 1), amount * (1.0 - ahead), count)
+    return total + np.bincount(np.clip(first + 1, 0, count - 1), amount * ahead, count)
+
+
 def of_particles(first, last, flow_distance=FLOW_DISTANCE):
-    """Flow between two sets of particles (chain_files.Particles). Columns are two particles wide and begin at whole
-    multiples of their width, so that runs of the same size share them. Particles that have left count nowhere; where some
-    have, what moved is told by the displacement since the start of the motion."""
-    width = 2.0 * first.size
+    """Flow between two sets of particles (chain_files.Particles). Columns are about four particles wide, two cells of the usual grid, and begin at
+    whole multiples of their width, so that runs of the same size share them; a particle's volume is shared out over the columns that
+    it lies in. Particles that have left count nowhere; where some have, what moved is told by the displacement since the start of the
+    motion."""
+    width = column_width(first.size)
     moved = last.data["displacement"][:, :2].copy()
     if len(first.position) == len(last.position):
         moved -= first.data["displacement"][:, :2]
@@ -60,10 +77,10 @@ def of_particles(first, last, flow_distance=FLOW_DISTANCE):
     count = max(e.max() for e in edge) - begin + 1
     half = 0.5 * first.size
     volume = last.data["volume"]
-    depth = np.bincount(edge[1][flowed] - begin, volume[flowed], count) / width
+    depth = shared_out(last.position[flowed, 0] / width - begin, volume[flowed], half / width, count) / width
     x = (begin + np.arange(count) + 0.5) * width
     return Flow(x, highest(edge[0] - begin, first.position[:, 1] + half, count), highest(edge[1] - begin, last.position[:, 1] + half, count),
-                ground(last.terrain, x), depth, width, float(volume[flowed].sum()), last.terrain)
+                ground(last.terrain, x), depth, width, float(volume[flowed].sum()))
 
 
 def of_frames(folder, flow_distance=FLOW_DISTANCE):

@@ -25,6 +25,7 @@ class Run:
     numbers: dict  # headline numbers
     flow: object  # profile_of_flow.Flow, or None
     front: dict  # columns of front.csv, or None
+    ended: str = ""  # stop_reason
     inputs: dict = field(default_factory=dict)  # "mpm:/residual_strength/factor" -> value
 
 
@@ -89,7 +90,8 @@ def load(name, fem, phase):
     except SystemExit:  # chain_files has said which file
         raise RunError(f"RUNS: run '{name}' cannot be read; compute it once more") from None
     settings = (read_json(root / "run.json") or {}).get("settings", []) if name != "base" else []
-    return Run(name, place, settings, numbers, flow, series(root / "mpm" / "front.csv"), inputs_of(place))
+    return Run(name, place, settings, numbers, flow, series(root / "mpm" / "front.csv"),
+               (read_json(root / "mpm" / "summary.json") or {}).get("stop_reason", ""), inputs_of(place))
 
 
 def load_all(words, fem, phase):

@@ -64,12 +64,12 @@ def unit_command(arguments, store, folder, threads):
 
 def write_rules(path, units, lines, command):
     """Rules for make: a unit comes after those whose results it reads. Failures are told by files, so that the rest goes on; an
-    interruption ends all."""
+    interruption ends all. `exec`, so that make's signals reach the unit and no shell in between."""
     rules = [f".PHONY: all {' '.join(f'unit{line}' for line in lines.values())}", "all: " + " ".join(f"unit{line}" for line in lines.values())]
     for unit in units:
         line = lines[unit.stage, unit.key]
         rules.append(f"unit{line}: {' '.join(f'unit{lines[name]}' for name in unit.after if name in lines)}")
-        rules.append(f"\t@{command.replace('$', '$$')} --line {line} || test $$? -ne 130")
+        rules.append(f"\t@exec {command.replace('$', '$$')} --failures-told --line {line}")
     path.write_text("\n".join(rules) + "\n")
 
 

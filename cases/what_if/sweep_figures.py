@@ -119,7 +119,7 @@ def profiles(plt, table, output):
         axis.set_title(f"{label}, column by column over {have.sum()} members" + (" (heights exaggerated)" if axis is axes[0] else ""))
     known = ~np.isnan(initial[:, part]).all(axis=0)
     axes[0].plot(x[known], np.nanmedian(initial[:, part][:, known], axis=0), color="0.4", lw=1.0, ls="--", label="at the hand-over")
-    axes[0].plot(x, p["bed"][part], color="0.2", lw=1.2, label="bed")
+    axes[0].plot(x, p["bed"][part], color="#8b6b4a", lw=1.2, label="bed")
     axes[0].set_ylabel("y (m)")
     axes[1].set_ylabel("depth (m)")
     axes[1].set_ylim(bottom=0.0)

@@ -67,24 +67,31 @@ with tempfile.TemporaryDirectory() as name:
 
     # Killed half-way, softly and hard, it goes on with what is missing; a member that was interrupted resumes.
     many = copy.deepcopy(FACTORS)
-    many["parameters"]["factor"]["values"] = [0.5 + 0.01 * k for k in range(1, 9)]
+    many["parameters"]["factor"]["values"] = [0.5 + 0.01 * k for k in range(1, 13)]
     clone.sweep_file(many)
     (clone.root / "slow").write_text("0.8")
-    for number in (signal.SIGTERM, signal.SIGKILL):
+    called = ""
+    for number, kill in ((signal.SIGTERM, os.kill), (signal.SIGTERM, os.killpg), (signal.SIGKILL, os.killpg)):
+        called += clone.log.read_text()
         clone.log.write_text("")
         process = subprocess.Popen(clone.command("sweep-files", "-j2"), cwd=clone.root, env=clone.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                    start_new_session=True)
         done = len(list(store.glob("mpm-*/member.json")))
-        while len(list(store.glob("mpm-*/member.json"))) < done + 2 and process.poll() is None:
+        while process.poll() is None:  # until two are done and another one runs
+            new = len(list(store.glob("mpm-*/member.json"))) - done
+            if new >= 2 and clone.log.read_text().count(FACTOR) > new:
+                break
             time.sleep(0.02)
-        time.sleep(0.2)
-        os.killpg(process.pid, number)
+        time.sleep(0.1)
+        kill(process.pid, number)
         process.communicate()
         assert process.returncode != 0
+        if number == signal.SIGTERM:
+            assert len(list(store.glob("mpm-*/work/mpm/checkpoint.h5"))) >= 1, "the programs were told to stop"
     there = {row for row in store.glob("mpm-*/member.json")}
     (clone.root / "slow").unlink()
     result, ran = clone.make("sweep-files", "-j2", status=0)
-    assert 1 <= len(ran) <= 4 and len(table()) == 8 and {row["state"] for row in table()} == {"done"}, ran
+    assert 1 <= len(ran) <= 6 and "--resume" in called and len(table()) == 12 and {row["state"] for row in table()} == {"done"}, ran
     assert not [p for p in store.glob("mpm-*/work") if (p.parent / "member.json").exists()], "what a killed member left is gone"
 
     # A full disk: said, nothing under a final name, and it goes on when there is room.
