@@ -34,6 +34,7 @@ PARTICLES_PER_THREAD = 50000  # fewer: one thread each, and as many members at a
 
 def jobs_asked(flags):
     """The number behind make's -j: 1 without one, 0 for -j alone."""
+    flags = flags.split(" -- ")[0]
     found = re.search(r"(?:^|\s)-j\s*(\d*)(?=\s|$)", f" {flags}") or re.search(r"(?:^|\s)--jobs(?:=(\d+))?(?=\s|$)", f" {flags}")
     return 1 if found is None else int(found.group(1) or 0)
 

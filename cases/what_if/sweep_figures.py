@@ -18,18 +18,24 @@ def shown_headlines(table):
     return [BY_NAME[name] for name in SHOWN if np.isfinite(table.numbers[name]).any()]
 
 
-def band(exceeding, count):
-    """Clopper and Pearson's interval for a probability, from how many of `count` independent members exceed; pointwise."""
-    tail = 0.5 * (1.0 - CONFIDENCE)
-    exceeding = np.asarray(exceeding, float)
+def band(exceeding, done, failed):
+    """Clopper and Pearson's interval for a probability, from how many of the `done` independent members exceed; pointwise. What `failed`
+    members would have come to is not known: the lower end counts them as not exceeding, the upper end as exceeding."""
+    tail, count = 0.5 * (1.0 - CONFIDENCE), done + failed
+    least, most = np.asarray(exceeding, float), np.asarray(exceeding, float) + failed
     with np.errstate(invalid="ignore"):
-        low = np.where(exceeding > 0, beta.ppf(tail, exceeding, count - exceeding + 1), 0.0)
-        high = np.where(exceeding < count, beta.ppf(1.0 - tail, exceeding + 1, count - exceeding), 1.0)
+        low = np.where(least > 0, beta.ppf(tail, least, count - least + 1), 0.0)
+        high = np.where(most < count, beta.ppf(1.0 - tail, most + 1, count - most), 1.0)
     return low, high
 
 
+def band_words(failed):
+    words = f"{100 * CONFIDENCE:.0f} % confidence at each point (Clopper-Pearson)"
+    return words + (f",\n{failed} failed member{'s' if failed > 1 else ''} counted either way" if failed else "")
+
+
 def exceedance(plt, table, output):
-    headlines = shown_headlines(table)
+    headlines, failed = shown_headlines(table), table.state.count("failed")
     figure, axes = plt.subplots(1, len(headlines), figsize=(style.WIDTH, 4.6), squeeze=False)
     for axis, headline in zip(axes[0], headlines):
         values = np.sort(table.numbers[headline.name][np.isfinite(table.numbers[headline.name])]) * headline.factor
@@ -37,10 +43,9 @@ def exceedance(plt, table, output):
         span = max(np.ptp(values), 1e-3 * max(abs(values[-1]), 1e-9))
         steps = np.concatenate([[values[0] - 0.08 * span], values, [values[-1] + 0.08 * span]])
         more = np.concatenate([[count], np.arange(count - 1, -1, -1), [0]])
-        low, high = band(more, count)
-        axis.fill_between(steps, low, high, step="post", color=BLUE, alpha=0.18, lw=0,
-                          label=f"{100 * CONFIDENCE:.0f} % confidence, point by point (Clopper-Pearson)")
-        axis.step(steps, more / count, where="post", color=BLUE, label=f"share of {count} members")
+        low, high = band(more, count, failed)
+        axis.fill_between(steps, low, high, step="post", color=BLUE, alpha=0.18, lw=0, label=band_words(failed))
+        axis.step(steps, more / count, where="post", color=BLUE, label=f"share of the {count} members done")
         axis.set(xlabel=f"{headline.label} ({headline.display_unit})", ylabel="probability of more" if table.plan["design"] != "grid" else "share of members with more",
                  ylim=(0.0, 1.0), xlim=(steps[0], steps[-1]), title=headline.label)
         axis.grid(alpha=0.3)
@@ -48,13 +53,18 @@ def exceedance(plt, table, output):
     style.save(figure, output)
 
 
-def tornado(axis, table, headline):
+def in_order(table, headline):
+    """The regression's effects, the largest last (it is drawn on top), and what it explains."""
     effects, explained = sensitivity.regression(table, headline.name)
+    return (sorted(effects, key=lambda effect: abs(effect.high - effect.low)) if effects else None), explained
+
+
+def tornado(axis, table, headline):
+    effects, explained = in_order(table, headline)
     if effects is None:
         axis.text(0.5, 0.5, explained, ha="center", va="center", wrap=True, transform=axis.transAxes)
         axis.set_axis_off()
     else:
-        effects = sorted(effects, key=lambda effect: abs(effect.high - effect.low))
         rows = np.arange(len(effects))
         for row, effect in zip(rows, effects):
             axis.barh(row, effect.low * headline.factor, color=BLUE, height=0.6, label="at its 10th percentile" if row == 0 else None)
@@ -63,7 +73,7 @@ def tornado(axis, table, headline):
         axis.set_yticks(rows, [effect.name.replace("_", " ") for effect in effects])
         axis.set_xlabel(f"change ({headline.display_unit}), linear regression, $R^2$ = {explained:.2f}")
         axis.grid(alpha=0.3, axis="x")
-        axis.legend(loc="best", fontsize=8, frameon=True)
+        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06 - 0.45 / len(effects)), fontsize=8, ncol=2)
     axis.set_title(f"{headline.label}: one parameter at a time")
 
 
@@ -78,12 +88,13 @@ def indices(axis, table, headline):
             error = np.abs(np.array([part[1] for part in parts]).T - value)
             axis.barh(rows + offset, value, height=0.34, color=colour, label=label, xerr=error, ecolor="0.3")
         axis.set(title=f"{headline.label}: Sobol' indices", xlabel=f"share of the variance, with 95 % by bootstrap; {said} points (Saltelli)")
-        axis.legend(loc="best", fontsize=8, frameon=True)
+        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06 - 0.45 / len(names)), fontsize=8, ncol=2)
     else:
-        effects, explained = sensitivity.regression(table, headline.name)
+        effects, explained = in_order(table, headline)
         if effects is None:
             axis.set_axis_off()
             return
+        names = [effect.name.replace("_", " ") for effect in effects]
         axis.barh(rows, [effect.share for effect in effects], height=0.6, color=BLUE)
         axis.set(title=f"{headline.label}: first-order shares by regression", xlabel=f"$b_i^2$ var($x_i$) / var(y); explained together: {explained:.2f}")
     axis.set_yticks(rows, names)
@@ -93,7 +104,7 @@ def indices(axis, table, headline):
 
 def sensitivities(plt, table, output):
     headlines = shown_headlines(table)
-    height = 1.6 + 0.45 * len(table.parameters)
+    height = 1.9 + 0.45 * len(table.parameters)
     figure, axes = plt.subplots(len(headlines), 2, figsize=(style.WIDTH, height * len(headlines)), squeeze=False)
     for row, headline in zip(axes, headlines):
         tornado(row[0], table, headline)
@@ -124,9 +135,9 @@ def profiles(plt, table, output):
     axes[1].set_ylabel("depth (m)")
     axes[1].set_ylim(bottom=0.0)
     share = (depth[:, part] > WANTED).sum(axis=0)
-    low, high = band(share, len(depth))
-    axes[2].fill_between(x, low, high, step="mid", color=RED, alpha=0.18, lw=0, label=f"{100 * CONFIDENCE:.0f} % confidence, point by point (Clopper-Pearson)")
-    axes[2].step(x, share / len(depth), where="mid", color=RED, label="share of members")
+    low, high = band(share, len(depth), table.state.count("failed"))
+    axes[2].fill_between(x, low, high, step="mid", color=RED, alpha=0.18, lw=0, label=band_words(table.state.count("failed")))
+    axes[2].step(x, share / len(depth), where="mid", color=RED, label=f"share of the {len(depth)} members done")
     axes[2].set(ylim=(0.0, 1.02), xlabel="x (m)", ylabel="probability", title=f"flow deeper than {WANTED:g} m", xlim=(x[0], x[-1]))
     for axis in axes:
         axis.grid(alpha=0.3)
@@ -148,6 +159,8 @@ def scatter(plt, table, output):
             against = table.values[p["name"]]
             if p["numeric"]:
                 axis.plot(against, values, "o", ms=4, color=BLUE, alpha=0.7)
+                lost = [value for value, state in zip(against, table.state) if state == "failed"]
+                axis.plot(lost, np.full(len(lost), 0.02), "x", ms=6, color=RED, transform=axis.get_xaxis_transform(), clip_on=False)
                 if isinstance(p["base"], (int, float)) and min(against) <= p["base"] <= max(against):
                     axis.axvline(p["base"], color="0.5", lw=0.9, ls="--")
             else:
@@ -157,7 +170,8 @@ def scatter(plt, table, output):
             axis.set_xlabel(p["name"].replace("_", " ") + (" (factor on the file's value)" if p["scales"] else ""))
             axis.grid(alpha=0.3)
         axis_row[0].set_ylabel(f"{headline.label} ({headline.display_unit})")
-    figure.suptitle("members; dashed: the base run's value", fontsize=10)
+    failed = table.state.count("failed")
+    figure.suptitle("members; dashed: the base run's value" + (f"; crosses: the {failed} that failed" if failed else ""), fontsize=10)
     style.save(figure, output)
 
 
