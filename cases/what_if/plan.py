@@ -126,9 +126,10 @@ def write_table(path, units):
     return lines
 
 
-def forget_failures(units, store):
-    for unit in units:
-        (folder_of(store, unit.stage, unit.key) / "failed.json").unlink(missing_ok=True)
+def forget_failures(members, store):
+    """What failed is tried again: of members that are missing nothing is known any more."""
+    for name in {name for member in members if not is_done(store, member.key) for name in member.keys.items()}:
+        (folder_of(store, *name) / "failed.json").unlink(missing_ok=True)
 
 
 def outcome(member, store):

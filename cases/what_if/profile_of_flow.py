@@ -27,6 +27,7 @@ class Flow:
     depth: np.ndarray  # m
     width: float  # m
     released_volume: float  # m3 per metre of dam
+    since: float  # s since the start of the motion at which the runout begins
 
 
 def column_width(particle_size):
@@ -80,7 +81,7 @@ def of_particles(first, last, flow_distance=FLOW_DISTANCE):
     depth = shared_out(last.position[flowed, 0] / width - begin, volume[flowed], half / width, count) / width
     x = (begin + np.arange(count) + 0.5) * width
     return Flow(x, highest(edge[0] - begin, first.position[:, 1] + half, count), highest(edge[1] - begin, last.position[:, 1] + half, count),
-                ground(last.terrain, x), depth, width, float(volume[flowed].sum()))
+                ground(last.terrain, x), depth, width, float(volume[flowed].sum()), first.time)
 
 
 def of_frames(folder, flow_distance=FLOW_DISTANCE):

@@ -113,4 +113,4 @@ def load_all(words, fem, phase):
 
 def hand_over_time(run):
     """s since the start of the motion at which the runout begins; 0 for cases without a hand-over."""
-    return float(run.inputs.get("T= (s)", 0.0))
+    return run.flow.since if run.flow is not None else float(run.inputs.get("T= (s)", 0.0))

@@ -100,7 +100,7 @@ def run(arguments, design, folder):
     stages = {stage: sum(1 for unit in units if unit.stage == stage) for stage in dict.fromkeys(unit.stage for unit in units)}
     print(f"{folder}: {len(members)} members, {len({m.key for m in members}) - missing} there already"
           + (f"; to compute: {', '.join(f'{count} x {stage}' for stage, count in stages.items())}" if units else ""), flush=True)
-    plan.forget_failures(units, store)
+    plan.forget_failures(members, store)
     lines = plan.write_table(folder / "units.jsonl", units)
     cores = len(os.sched_getaffinity(0))
     particles = particles_of(arguments, members, store)

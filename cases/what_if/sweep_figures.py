@@ -49,7 +49,7 @@ def exceedance(plt, table, output):
         axis.set(xlabel=f"{headline.label} ({headline.display_unit})", ylabel="probability of more" if table.plan["design"] != "grid" else "share of members with more",
                  ylim=(0.0, 1.0), xlim=(steps[0], steps[-1]), title=headline.label)
         axis.grid(alpha=0.3)
-        axis.legend(loc="lower left", fontsize=8, frameon=True)
+        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), fontsize=8)
     style.save(figure, output)
 
 
