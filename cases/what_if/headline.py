@@ -38,6 +38,8 @@ MEASURE = 1  # to be raised when a number or the profile is measured in another 
 FEM, MPM, FLOW = "fem/summary.json", "mpm/summary.json", "flow"
 HEADLINES = (
     Headline("runout_m", "runout", "m", ((MPM, "runout_m"),)),
+    Headline("runout_of_body_m", "runout of the flow's body", "m", ((MPM, "runout_of_body_m"),)),
+    Headline("coherent_runout_m", "runout without gaps", "m", ((MPM, "coherent_runout_m"),)),
     Headline("flow_front_m", "front of what flowed, x", "m", ((MPM, "flow_front_position_m"),)),
     Headline("released_volume_m3", "released volume", "m3", ((MPM, "flowed_volume_m3"), (FLOW, "released_volume_m3")), digits=0),
     Headline("flowed_mass_kg", "mass that flowed", "kg", ((MPM, "flowed_mass_kg"),), "t", 1e-3, 0),

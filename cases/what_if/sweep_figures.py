@@ -82,6 +82,8 @@ def indices(axis, table, headline):
     names = [p["name"].replace("_", " ") for p in table.parameters]
     rows = np.arange(len(names))
     if found is not None:
+        found = sorted(found, key=lambda index: index.total)
+        names = [index.name.replace("_", " ") for index in found]
         for offset, colour, label, parts in ((0.18, BLUE, "first order", [(i.first, i.first_interval) for i in found]),
                                              (-0.18, RED, "total", [(i.total, i.total_interval) for i in found])):
             value = np.array([part[0] for part in parts])
