@@ -31,6 +31,12 @@ class Table:
         return np.array([state == "done" for state in self.state])
 
     @property
+    def draws(self):
+        """Mask of the members that are draws of their own: of a "saltelli" design its two base samples, without their mixtures."""
+        number = np.arange(len(self.state))
+        return number % (len(self.parameters) + 2) < 2 if self.plan["design"] == "saltelli" else np.full(len(number), True)
+
+    @property
     def parameters(self):
         return self.plan["parameters"]
 

@@ -39,19 +39,30 @@ def jobs_asked(flags):
     return 1 if found is None else int(found.group(1) or 0)
 
 
-def share(missing, particles, cores, asked):
-    """(units at a time, threads of each) for `missing` members."""
+def share(missing, particles, cores, asked, memory=1.0, each=0.0):
+    """(units at a time, threads of each) for `missing` members: as many at a time as make was asked for, or as the cores and the memory
+    have room for (`memory` free, `each` of one run, in one unit). Cores that are left over go to the units."""
     threads = min(max(particles // PARTICLES_PER_THREAD, 1), cores)
-    jobs = asked or max(cores // threads, 1)
+    room = int(min(memory / each, cores)) if each > 0.0 else cores
+    jobs = asked or max(min(cores // threads, room), 1)
     jobs = max(min(jobs, missing), 1)
     return jobs, max(cores // jobs, 1)
 
 
-def particles_of(arguments, members, store):
-    """How large the scene is: as the base run's or an earlier member's summary says; 0 when nothing is known yet."""
+def scene_of(arguments, members, store):
+    """(particles, MB of memory of one run), as the base run's or an earlier member's summary says; zeros when nothing is known yet."""
     summaries = [arguments.phase / "mpm" / "summary.json"]
     summaries += [plan.folder_of(store, "mpm", member.key) / "member.json" for member in members if plan.is_done(store, member.key)][:1]
-    return next((int(content["particles"]) for content in map(read_json, summaries) if content and content.get("particles")), 0)
+    known = next((content for content in map(read_json, summaries) if content and content.get("particles")), {})
+    return int(known.get("particles", 0)), float(known.get("peak_memory_MB") or 0.0)
+
+
+def free_memory():
+    """MB that the system can give without swapping; without end where it does not say."""
+    try:
+        return int(re.search(r"MemAvailable:\s*(\d+) kB", Path("/proc/meminfo").read_text()).group(1)) / 1024.0
+    except (OSError, AttributeError):
+        return float("inf")
 
 
 def unit_command(arguments, store, folder, threads):
@@ -103,14 +114,14 @@ def run(arguments, design, folder):
     plan.forget_failures(members, store)
     lines = plan.write_table(folder / "units.jsonl", units)
     cores = len(os.sched_getaffinity(0))
-    particles = particles_of(arguments, members, store)
+    particles, memory = scene_of(arguments, members, store)
     if arguments.submit == "slurm":
         threads = min(max(particles // PARTICLES_PER_THREAD, 1), cores)
         progress.begin(folder, [unit.stage for unit in units], len(members), 1)
         return slurm.submit(arguments, folder, units, unit_command(arguments, store, folder, threads), threads, gather_command(arguments))
     status = 0
     if units:
-        jobs, threads = share(missing, particles, cores, jobs_asked(os.environ.get("MAKEFLAGS", "")))
+        jobs, threads = share(missing, particles, cores, jobs_asked(os.environ.get("MAKEFLAGS", "")), free_memory(), memory)
         print(f"{jobs} at a time, {threads} thread{'s' if threads > 1 else ''} each", flush=True)
         progress.begin(folder, [unit.stage for unit in units], len(members), jobs)
         write_rules(folder / "units.mk", units, lines, unit_command(arguments, store, folder, threads))

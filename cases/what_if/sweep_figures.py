@@ -15,7 +15,7 @@ BLUE, RED = "#2b6ca3", style.ACCENT
 
 
 def shown_headlines(table):
-    return [BY_NAME[name] for name in SHOWN if np.isfinite(table.numbers[name]).any()]
+    return [BY_NAME[name] for name in SHOWN if np.isfinite(table.numbers[name][table.draws]).any()]
 
 
 def band(exceeding, done, failed):
@@ -34,11 +34,15 @@ def band_words(failed):
     return words + (f",\n{failed} failed member{'s' if failed > 1 else ''} counted either way" if failed else "")
 
 
+def failed_draws(table):
+    return int(sum(state == "failed" for state, draw in zip(table.state, table.draws) if draw))
+
+
 def exceedance(plt, table, output):
-    headlines, failed = shown_headlines(table), table.state.count("failed")
+    headlines, failed = shown_headlines(table), failed_draws(table)
     figure, axes = plt.subplots(1, len(headlines), figsize=(style.WIDTH, 4.6), squeeze=False)
     for axis, headline in zip(axes[0], headlines):
-        values = np.sort(table.numbers[headline.name][np.isfinite(table.numbers[headline.name])]) * headline.factor
+        values = np.sort(table.numbers[headline.name][table.draws & np.isfinite(table.numbers[headline.name])]) * headline.factor
         count = len(values)
         span = max(np.ptp(values), 1e-3 * max(abs(values[-1]), 1e-9))
         steps = np.concatenate([[values[0] - 0.08 * span], values, [values[-1] + 0.08 * span]])
@@ -106,7 +110,7 @@ def indices(axis, table, headline):
 
 def sensitivities(plt, table, output):
     headlines = shown_headlines(table)
-    height = 1.9 + 0.45 * len(table.parameters)
+    height = 2.3 + 0.45 * len(table.parameters)
     figure, axes = plt.subplots(len(headlines), 2, figsize=(style.WIDTH, height * len(headlines)), squeeze=False)
     for row, headline in zip(axes, headlines):
         tornado(row[0], table, headline)
@@ -116,7 +120,7 @@ def sensitivities(plt, table, output):
 
 def profiles(plt, table, output):
     p = table.profiles
-    have = table.done & ~np.isnan(p["depth"]).all(axis=1)
+    have, failed = table.done & table.draws & ~np.isnan(p["depth"]).all(axis=1), failed_draws(table)
     depth, surface, initial = p["depth"][have], p["surface"][have], p["initial_surface"][have]
     some = np.flatnonzero((depth > 0.0).any(axis=0))
     some = some if len(some) else np.arange(len(p["x"]))
@@ -137,8 +141,8 @@ def profiles(plt, table, output):
     axes[1].set_ylabel("depth (m)")
     axes[1].set_ylim(bottom=0.0)
     share = (depth[:, part] > WANTED).sum(axis=0)
-    low, high = band(share, len(depth), table.state.count("failed"))
-    axes[2].fill_between(x, low, high, step="mid", color=RED, alpha=0.18, lw=0, label=band_words(table.state.count("failed")))
+    low, high = band(share, len(depth), failed)
+    axes[2].fill_between(x, low, high, step="mid", color=RED, alpha=0.18, lw=0, label=band_words(failed))
     axes[2].step(x, share / len(depth), where="mid", color=RED, label=f"share of the {len(depth)} members done")
     axes[2].set(ylim=(0.0, 1.02), xlabel="x (m)", ylabel="probability", title=f"flow deeper than {WANTED:g} m", xlim=(x[0], x[-1]))
     for axis in axes:
@@ -186,7 +190,7 @@ def draw(table, folder):
     for name, function, caption, possible in (
             ("exceedance.png", exceedance, "How often a value is exceeded", True),
             ("sensitivity.png", sensitivities, "Which parameter moves it", True),
-            ("profiles.png", profiles, "Along the flow", bool(table.profiles)),
+            ("profiles.png", profiles, "Along the flow", bool(table.profiles) and bool((table.done & table.draws).any())),
             ("scatter.png", scatter, "Against each parameter", True)):
         if possible:
             function(plt, table, folder / name)

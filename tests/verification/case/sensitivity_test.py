@@ -28,7 +28,7 @@ def table(design, x, y, words=None):
         parameters.append({"name": "word", "numeric": False, "base": "a", "scales": False, "keys": ["mpm:/b"]})
     state = ["done" if np.isfinite(number) else "failed" for number in y]
     return types.SimpleNamespace(plan={"design": design}, parameters=parameters, values=values, state=state, numbers={
-        "runout_m": y, "released_volume_m3": y + 1.0}, done=np.isfinite(y), profiles={})
+        "runout_m": y, "released_volume_m3": y + 1.0}, done=np.isfinite(y), draws=np.full(len(y), True), profiles={})
 
 
 # Ishigami and Homma (1990), a = 7, b = 0.1: first order 0.3139, 0.4424, 0; total 0.5576, 0.4424, 0.2437. One member has failed.

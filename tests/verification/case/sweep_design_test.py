@@ -15,6 +15,7 @@ source = pathlib.Path(sys.argv[1])
 sys.path.insert(0, str(source / "cases" / "what_if"))
 import paths  # noqa: E402, F401
 import design  # noqa: E402
+import sweep  # noqa: E402
 from sample import copula, sample  # noqa: E402
 from scipy.stats import lognorm, spearmanr  # noqa: E402
 
@@ -25,6 +26,13 @@ good = {"members": 64, "parameters": {
     "angle": {"key": "mpm:/materials/tailings/friction_angle", "distribution": "normal", "mean": 33, "sd": 1},
     "bins": {"key": "transfer:/rules/0/residual_strength/strengths", "distribution": "uniform", "low": 0.8, "high": 1.2, "scales": True},
     "cap": {"key": "transfer:/rules/0/residual_strength/drained_cap", "values": [True, False]}}}
+
+# Cores, memory and what make was asked for.
+for found, wanted in ((sweep.share(1000, 11730, 16, 0), (16, 1)), (sweep.share(1000, 400000, 16, 0), (2, 8)), (sweep.share(3, 11730, 16, 0), (3, 5)),
+                      (sweep.share(1000, 11730, 16, 4), (4, 4)), (sweep.share(9, 11730, 16, 0, 1000.0, 300.0), (3, 5)), (sweep.share(9, 0, 2, 1), (1, 2))):
+    assert found == wanted, (found, wanted)
+for flags, jobs in (("w -j2 --jobserver-auth=3,4", 2), ("kw -j", 0), ("w", 1), (" -- CASE=a -j9", 1), ("w -j16 -- BIN=b", 16)):
+    assert sweep.jobs_asked(flags) == jobs, flags
 
 with tempfile.TemporaryDirectory() as name:
     path = pathlib.Path(name) / "sweep.json"
