@@ -11,6 +11,7 @@ import numpy as np
 
 import paths  # noqa: F401
 import members_table
+import mesh_study
 from case_part import read_case
 from design import at_pointer, design_of
 from headline import HEADLINES
@@ -41,8 +42,8 @@ def design_for(case_dir):
     return design_of(content, Path(case_dir) / "ensemble.json", case_dir, contents)
 
 
-def write_uncertainty(folder, phase, chain):
-    """Exit status; uncertainty.json from a gathered ensemble."""
+def write_uncertainty(folder, fem, phase, chain):
+    """Exit status; uncertainty.json from a gathered ensemble, with what ensembles of other sizes add (mesh_study.py)."""
     table = members_table.load(folder)
     numbers = {}
     for headline in HEADLINES:
@@ -54,7 +55,10 @@ def write_uncertainty(folder, phase, chain):
         print(f"{phase}: two members at least make a spread")
         return 2
     path = Path(phase) / "uncertainty.json"
-    write_json(path, {"of": chain.record("mpm")["key"], "varied": [key for p in table.parameters for key in p["keys"]],
-                      "members": table.state.count("done"), "asked": len(table.state), "numbers": numbers})
-    print(f"  {path}")
+    content = {"of": chain.record("mpm")["key"], "varied": [key for p in table.parameters for key in p["keys"]],
+               "members": table.state.count("done"), "asked": len(table.state), "numbers": numbers}
+    write_json(path, content)
+    mesh_study.by_size(numbers, mesh_study.known_sizes(chain, fem, phase))
+    write_json(path, content)
+    print("\n".join([*mesh_study.lines(numbers, HEADLINES), f"  {path}"]))
     return 0

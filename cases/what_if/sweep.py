@@ -138,7 +138,7 @@ def finish(arguments, folder):
     """Table and pictures; an ensemble's spread too."""
     status = gather.gather(folder)
     if arguments.ensemble:
-        status = max(status, ensemble.write_uncertainty(folder, arguments.phase, chain_of(arguments)))
+        status = max(status, ensemble.write_uncertainty(folder, arguments.fem, arguments.phase, chain_of(arguments)))
     return status
 
 

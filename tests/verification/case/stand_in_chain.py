@@ -1,6 +1,6 @@
 """A clone with a case `dam` whose programs are scripts: they write what the real ones write, in no time, and note how they were called.
 
-mpm_stage's runout is 10 m / factor. It refuses a negative factor, fails above `fails_above`, and waits `slow` seconds.
+mpm_stage's runout is 10 m / factor at the default size, and changes with the cell's size by 4 m / factor each metre. It refuses a negative factor, fails above `fails_above`, and waits `slow` seconds.
 """
 
 import os
@@ -50,7 +50,8 @@ else:
     (out / "checkpoint.h5").unlink(missing_ok=True)
     put(out / "front.csv", "time_s,flow_front_m,flowed_mass_kg\\n0,0,0\\n1,%g,1000\\n" % (10 / factor))
     put(out / "frames" / "runout_00000.vtkhdf", "x" * 100000)
-    put(out / "summary.json", json.dumps({{"runout_m": 10 / factor, "flowed_volume_m3": 100 / factor, "flowed_mass_kg": 2e5 / factor,
+    cell = {{"coarse": 1.0, "default": 0.75, "fine": 0.375}}[words[words.index("--size") + 1]]
+    put(out / "summary.json", json.dumps({{"runout_m": (10 + 4 * (cell - 0.75)) / factor, "flowed_volume_m3": 100 / factor, "flowed_mass_kg": 2e5 / factor,
                                            "particles": 1000, "stop_reason": "at rest"}}))
 """
 
