@@ -7,7 +7,7 @@ from pathlib import Path
 ROWS = {
     ("FEM", "largest displacement"): ("largest_displacement_fem_m", 1.0, 2),
     ("FEM", "liquefied depth"): ("liquefied_depth_m", 1.0, 1),
-    ("FEM", "mean r_u of the tailings"): ("mean_pore_pressure_ratio", 1.0, 3),
+    ("FEM", "mean r_u of the tailings"): ("mean_pore_pressure_ratio", 1.0, 2),
     ("MPM", "runout from that toe"): ("runout_m", 1.0, 1),
     ("MPM", "  without gaps"): ("coherent_runout_m", 1.0, 1),
     ("MPM", "front of what flowed, x"): ("flow_front_m", 1.0, 1),

@@ -77,7 +77,7 @@ def tornado(axis, table, headline):
         axis.set_yticks(rows, [effect.name.replace("_", " ") for effect in effects])
         axis.set_xlabel(f"change ({headline.display_unit}), linear regression, $R^2$ = {explained:.2f}")
         axis.grid(alpha=0.3, axis="x")
-        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06 - 0.45 / len(effects)), fontsize=8, ncol=2)
+        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06 - 0.45 / max(len(effects), 2)), fontsize=8, ncol=2)
     axis.set_title(f"{headline.label}: one parameter at a time")
 
 
@@ -94,7 +94,7 @@ def indices(axis, table, headline):
             error = np.abs(np.array([part[1] for part in parts]).T - value)
             axis.barh(rows + offset, value, height=0.34, color=colour, label=label, xerr=error, ecolor="0.3")
         axis.set(title=f"{headline.label}: Sobol' indices", xlabel=f"share of the variance, with 95 % by bootstrap; {said} points (Saltelli)")
-        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06 - 0.45 / len(names)), fontsize=8, ncol=2)
+        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06 - 0.45 / max(len(names), 2)), fontsize=8, ncol=2)
     else:
         effects, explained = in_order(table, headline)
         if effects is None:
@@ -110,7 +110,7 @@ def indices(axis, table, headline):
 
 def sensitivities(plt, table, output):
     headlines = shown_headlines(table)
-    height = 2.3 + 0.45 * len(table.parameters)
+    height = 2.3 + 0.45 * max(len(table.parameters), 2)
     figure, axes = plt.subplots(len(headlines), 2, figsize=(style.WIDTH, height * len(headlines)), squeeze=False)
     for row, headline in zip(axes, headlines):
         tornado(row[0], table, headline)
@@ -166,7 +166,8 @@ def scatter(plt, table, output):
             if p["numeric"]:
                 axis.plot(against, values, "o", ms=4, color=BLUE, alpha=0.7)
                 lost = [value for value, state in zip(against, table.state) if state == "failed"]
-                axis.plot(lost, np.full(len(lost), 0.02), "x", ms=6, color=RED, transform=axis.get_xaxis_transform(), clip_on=False)
+                if lost:  # nothing at all would upset the layout
+                    axis.plot(lost, np.full(len(lost), 0.02), "x", ms=6, color=RED, transform=axis.get_xaxis_transform(), clip_on=False)
                 if isinstance(p["base"], (int, float)) and min(against) <= p["base"] <= max(against):
                     axis.axvline(p["base"], color="0.5", lw=0.9, ls="--")
             else:
@@ -189,7 +190,7 @@ def draw(table, folder):
         return made
     for name, function, caption, possible in (
             ("exceedance.png", exceedance, "How often a value is exceeded", True),
-            ("sensitivity.png", sensitivities, "Which parameter moves it", True),
+            ("sensitivity.png", sensitivities, "Which parameter moves it", len(table.parameters) > 1),
             ("profiles.png", profiles, "Along the flow", bool(table.profiles) and bool((table.done & table.draws).any())),
             ("scatter.png", scatter, "Against each parameter", True)):
         if possible:

@@ -35,7 +35,7 @@ with tempfile.TemporaryDirectory() as name:
     with h5py.File(folder / "members.h5") as file:
         assert file["numbers/runout_m"].attrs["unit"] == b"m" and np.allclose(file["numbers/runout_m"], [20, 40 / 3, 8, 5])
         assert list(file["parameters/factor"]) == [0.5, 0.75, 1.25, 2.0]
-    for picture in ("exceedance", "scatter", "sensitivity"):
+    for picture in ("exceedance", "scatter"):
         assert (folder / f"{picture}.png").stat().st_size > 5000, picture
     member = next(store.glob("mpm-*"))
     assert sorted(p.name for p in member.iterdir()) == ["front.csv", "member.json"], "a member keeps its numbers and no more"
