@@ -79,7 +79,7 @@ with tempfile.TemporaryDirectory() as name:
         done = len(list(store.glob("mpm-*/member.json")))
         while process.poll() is None:  # until two are done and another one runs
             new = len(list(store.glob("mpm-*/member.json"))) - done
-            if new >= 2 and clone.log.read_text().count(FACTOR) > new:
+            if new >= 2 and clone.log.read_text().count("mpm_stage") > new:
                 break
             time.sleep(0.02)
         time.sleep(0.1)
