@@ -75,7 +75,8 @@ def lines(numbers, headlines):
     for headline in headlines:
         number = numbers.get(headline.name, {})
         if "by_size" in number:
-            means = ", ".join(f"{size} {headline.display(own['mean'])} +- {headline.display(own['standard_deviation'])}" for size, own in number["by_size"].items())
+            means = ", ".join(f"{size} {headline.display(own['mean'])} +- {headline.display(own['standard_deviation'])}"
+                              for size, own in number["by_size"].items())
             limit = f"; extrapolated {headline.display(number['extrapolated'])} (order {number['order']:.1f})" if number.get("extrapolated") is not None else ""
             found.append(f"  {headline.label} ({headline.display_unit}): {means}{limit}")
     return found

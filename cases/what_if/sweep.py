@@ -39,14 +39,15 @@ def jobs_asked(flags):
     return 1 if found is None else int(found.group(1) or 0)
 
 
-def share(missing, particles, cores, asked, memory=1.0, each=0.0):
+def share(missing, particles, cores, asked, memory=1.0, each=0.0, own=0):
     """(units at a time, threads of each) for `missing` members: as many at a time as make was asked for, or as the cores and the memory
-    have room for (`memory` free, `each` of one run, in one unit). Cores that are left over go to the units."""
-    threads = min(max(particles // PARTICLES_PER_THREAD, 1), cores)
+    have room for (`memory` free, `each` of one run, in one unit). Cores that are left over go to the units, unless their threads are
+    given (`own`)."""
+    threads = own or min(max(particles // PARTICLES_PER_THREAD, 1), cores)
     room = int(min(memory / each, cores)) if each > 0.0 else cores
     jobs = asked or max(min(cores // threads, room), 1)
     jobs = max(min(jobs, missing), 1)
-    return jobs, max(cores // jobs, 1)
+    return jobs, own or max(cores // jobs, 1)
 
 
 def scene_of(arguments, members, store):
@@ -115,13 +116,14 @@ def run(arguments, design, folder):
     lines = plan.write_table(folder / "units.jsonl", units)
     cores = len(os.sched_getaffinity(0))
     particles, memory = scene_of(arguments, members, store)
+    own = int(arguments.threads or 0)
     if arguments.submit == "slurm":
-        threads = min(max(particles // PARTICLES_PER_THREAD, 1), cores)
+        threads = own or max(particles // PARTICLES_PER_THREAD, 1)
         progress.begin(folder, [unit.stage for unit in units], len(members), 1)
         return slurm.submit(arguments, folder, units, unit_command(arguments, store, folder, threads), threads, gather_command(arguments))
     status = 0
     if units:
-        jobs, threads = share(missing, particles, cores, jobs_asked(os.environ.get("MAKEFLAGS", "")), free_memory(), memory)
+        jobs, threads = share(missing, particles, cores, jobs_asked(os.environ.get("MAKEFLAGS", "")), free_memory(), memory, own)
         print(f"{jobs} at a time, {threads} thread{'s' if threads > 1 else ''} each", flush=True)
         progress.begin(folder, [unit.stage for unit in units], len(members), jobs)
         write_rules(folder / "units.mk", units, lines, unit_command(arguments, store, folder, threads))

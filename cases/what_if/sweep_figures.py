@@ -50,7 +50,8 @@ def exceedance(plt, table, output):
         low, high = band(more, count, failed)
         axis.fill_between(steps, low, high, step="post", color=BLUE, alpha=0.18, lw=0, label=band_words(failed))
         axis.step(steps, more / count, where="post", color=BLUE, label=f"share of the {count} members done")
-        axis.set(xlabel=f"{headline.label} ({headline.display_unit})", ylabel="probability of more" if table.plan["design"] != "grid" else "share of members with more",
+        axis.set(xlabel=f"{headline.label} ({headline.display_unit})",
+                 ylabel="share of members with more" if table.plan["design"] == "grid" else "probability of more",
                  ylim=(0.0, 1.0), xlim=(steps[0], steps[-1]), title=headline.label)
         axis.grid(alpha=0.3)
         axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), fontsize=8)

@@ -29,7 +29,8 @@ good = {"members": 64, "parameters": {
 
 # Cores, memory and what make was asked for.
 for found, wanted in ((sweep.share(1000, 11730, 16, 0), (16, 1)), (sweep.share(1000, 400000, 16, 0), (2, 8)), (sweep.share(3, 11730, 16, 0), (3, 5)),
-                      (sweep.share(1000, 11730, 16, 4), (4, 4)), (sweep.share(9, 11730, 16, 0, 1000.0, 300.0), (3, 5)), (sweep.share(9, 0, 2, 1), (1, 2))):
+                      (sweep.share(1000, 11730, 16, 4), (4, 4)), (sweep.share(9, 11730, 16, 0, 1000.0, 300.0), (3, 5)), (sweep.share(9, 0, 2, 1), (1, 2)),
+                      (sweep.share(9, 0, 8, 0, own=2), (4, 2))):
     assert found == wanted, (found, wanted)
 for flags, jobs in (("w -j2 --jobserver-auth=3,4", 2), ("kw -j", 0), ("w", 1), (" -- CASE=a -j9", 1), ("w -j16 -- BIN=b", 16)):
     assert sweep.jobs_asked(flags) == jobs, flags
