@@ -56,13 +56,19 @@ def note(folder, stage, key, success, seconds):
     show(folder, line(running, finished), len(finished) >= sum(running["units"].values()))
 
 
+def write(text):
+    """In one piece: several units say something at a time."""
+    sys.stderr.write(text)
+    sys.stderr.flush()
+
+
 def show(folder, text, last):
     if sys.stderr.isatty():
-        print(f"\r\x1b[K{text}", end="\n" if last else "", file=sys.stderr, flush=True)
+        write(f"\r\x1b[K{text}" + ("\n" if last else ""))
         return
     shown = folder / ".shown"
     if last or not shown.exists() or time.time() - os.stat(shown).st_mtime > EVERY:
-        print(text, file=sys.stderr, flush=True)
+        write(text + "\n")
         try:
             shown.touch()
         except OSError:

@@ -138,10 +138,14 @@ def run(arguments, design, folder):
 
 def finish(arguments, folder):
     """Table and pictures; an ensemble's spread too."""
-    status = gather.gather(folder)
-    if arguments.ensemble:
-        status = max(status, ensemble.write_uncertainty(folder, arguments.fem, arguments.phase, chain_of(arguments)))
-    return status
+    try:
+        status = gather.gather(folder)
+        if arguments.ensemble:
+            status = max(status, ensemble.write_uncertainty(folder, arguments.fem, arguments.phase, chain_of(arguments)))
+        return status
+    except OSError as error:
+        print(f"{folder}: table and pictures cannot be made: {error}\nThe members that are done are kept; the same command goes on.", file=sys.stderr)
+        return 2
 
 
 def gather_command(arguments):
