@@ -1,6 +1,7 @@
 """Numbers of a case's results, for the report and for the lines that a run ends with."""
 
 import chain_files as chain
+import spread
 
 
 def at_time(table, column, time):
@@ -106,4 +107,4 @@ def collect(results, phase):
     for stage, summaries in (("FEM", (mesh, geostatic, fem)), ("MPM", (mpm,))):
         told = [text for summary in summaries if summary for text in summary.get("warnings", [])]
         rows += [(stage, "warning", text, "") for text in dict.fromkeys(told)]
-    return rows
+    return spread.add(rows, phase)
