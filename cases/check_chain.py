@@ -31,6 +31,8 @@ def problems(folder):
     particles = chain.Particles(folder / "particles.h5")
     first = chain.Particles(chain.frames(folder / "mpm")[0])
     energy = mpm["energy"]
+    used = sum(use["strength_Pa"]["mean"] * use["particles"] for use in mpm.get("residual_strength", []))
+    shown = first.data.get("residual_strength", 0.0 * first.data["mass"]).sum()
     lost = abs(1.0 - mpm["mass_kg"] / particles.data["mass"].sum()) if not mpm["particles_removed"] else 0.0
     checks = [
         (fem["finished"], "fem_stage did not finish"),
@@ -44,6 +46,7 @@ def problems(folder):
         (abs(particles.time - first.time) < 1e-9, "the first frame is not the hand-over's state"),
         ((particles.data["volume"] > 0.0).all(), "particles without volume"),
         (mpm["stop_reason"] in ("at rest", "end time"), f"mpm_stage: {mpm['stop_reason']}"),
+        (abs(used - shown) <= 1e-9 * shown, "summary.json and the first frame disagree on the strengths"),
         (lost < 1e-12, f"mpm_stage lost {lost:.1e} of the mass"),
         # The scheme may dissipate energy; it must never make it.
         (energy["lost_ratio"] > -0.02, f"mpm_stage made energy: {-energy['lost_ratio']:.1%} of what turned over"),

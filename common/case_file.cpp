@@ -153,11 +153,14 @@ const Json& CaseNode::require(const std::string& key, std::string_view wanted) c
 void CaseNode::record(const std::string& key, const std::string& value, std::string_view unit, bool is_default) const {
   const std::string place = child(pointer_, key);
   const std::string origin = state_->origin(place);
-  state_->echo.push_back(fmt::format("{} = {}{}{}", place.substr(1), value,
-                                     unit.empty() || unit == "1" ? "" : fmt::format(" {}", unit),
-                                     is_default       ? "  (default)"
-                                     : origin.empty() ? ""
-                                                      : " " + origin));
+  std::string line =
+      fmt::format("{} = {}{}{}", place.substr(1), value, unit.empty() || unit == "1" ? "" : fmt::format(" {}", unit),
+                  is_default       ? "  (default)"
+                  : origin.empty() ? ""
+                                   : " " + origin);
+  // What is read for several things is told once.
+  if (std::find(state_->echo.begin(), state_->echo.end(), line) == state_->echo.end())
+    state_->echo.push_back(std::move(line));
 }
 
 double CaseNode::checked(const std::string& key, const Json& value, std::string_view unit, Range range) const {

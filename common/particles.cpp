@@ -106,6 +106,7 @@ void check_lengths(const ParticleSet& particles) {
   require(particles.material_id.size() == n, "material_id");
   require(particles.region_id.empty() || particles.region_id.size() == n, "region_id");
   require(particles.source_element.empty() || particles.source_element.size() == n, "source_element");
+  require(particles.strength_law.empty() || particles.strength_law.size() == n, "strength_law");
   for (const auto& field : fields()) {
     const std::size_t size = (particles.*field.values).size();
     const std::size_t columns = std::max<std::size_t>(file_columns(field, particles), 1);
@@ -136,6 +137,9 @@ void write_particles(const std::filesystem::path& path, const ParticleSet& parti
   if (!particles.source_element.empty())
     file.write(data + "source_element", std::span<const std::int64_t>(particles.source_element), 0, "1",
                "element of the snapshot, -1 when none");
+  if (!particles.strength_law.empty())
+    file.write(data + "strength_law", std::span<const std::int32_t>(particles.strength_law), 0, "1",
+               "index into /tailrun/strength_laws, -1 when none");
   for (const auto& [name, values] : particles.extra) {
     const auto unit = particles.extra_unit.find(name);
     file.write(data + name, std::span<const double>(values), 0, unit == particles.extra_unit.end() ? "1" : unit->second,
@@ -149,6 +153,9 @@ void write_particles(const std::filesystem::path& path, const ParticleSet& parti
   file.attribute("/tailrun", "particle_size_m", particles.particle_size);
   file.write_texts("/tailrun/material_names", particles.material_names, "names of the materials");
   file.write_texts("/tailrun/region_names", particles.region_names, "names of the FEM regions");
+  if (!particles.strength_law.empty())
+    file.write_texts("/tailrun/strength_laws", particles.strength_laws,
+                     "JSON: laws of the residual strength, with all inputs");
   file.group("/tailrun/terrain");
   for (const auto& line : particles.terrain)
     file.write("/tailrun/terrain/" + line.name, std::span<const double>(line.points), 2, "m",
@@ -178,7 +185,7 @@ ParticleSet read_particles(const std::filesystem::path& path) {
   const std::size_t n = particles.position.size() / 3;
   if (n == 0) file.fail("/VTKHDF/Points", "has no rows, but at least one particle is required");
 
-  std::vector<std::string> known = {"material_id", "region_id", "source_element"};
+  std::vector<std::string> known = {"material_id", "region_id", "source_element", "strength_law"};
   for (const auto& field : fields()) {
     known.push_back(field.name);
     const std::string name = data + field.name;
@@ -195,6 +202,12 @@ ParticleSet read_particles(const std::filesystem::path& path) {
     particles.region_id.assign(regions.begin(), regions.end());
   }
   if (file.has(data + "source_element")) particles.source_element = file.integers(data + "source_element", n, 1);
+  if (file.has(data + "strength_law")) {
+    particles.strength_laws = file.texts("/tailrun/strength_laws");
+    const auto laws = file.integers(data + "strength_law", n, 1);
+    check_indices(file, data + "strength_law", laws, -1, static_cast<std::int64_t>(particles.strength_laws.size()));
+    particles.strength_law.assign(laws.begin(), laws.end());
+  }
   for (const auto& name : file.members("/VTKHDF/PointData")) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     particles.extra[name] = file.doubles(data + name, n, 1);

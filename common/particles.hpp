@@ -47,6 +47,8 @@ struct ParticleSet {
   std::vector<double> depth;                              // m below the initial ground surface
   std::vector<double> excess_pore_pressure_ratio;         // r_u at transfer
   std::vector<double> residual_strength;                  // Pa, s_R where assigned, 0 elsewhere
+  std::vector<std::int32_t> strength_law;                 // index into strength_laws, -1 for none
+  std::vector<std::string> strength_laws;                 // JSON: the laws that gave residual_strength, with all inputs
   std::vector<double> plastic_deviatoric_strain;          // 1
   std::vector<double> displacement;                       // m, (n, 3), since the start of the motion
   std::map<std::string, std::vector<double>> extra;       // further scalars by name, written as "1" unless in units

@@ -10,6 +10,7 @@
 //   transfer_tool run transfer.json --snapshot snapshot_t16.000.h5 -o particles.h5
 //   transfer_tool info particles.h5
 //   transfer_tool import import.json -o snapshot.h5
+//   transfer_tool strength transfer.json -o strength.csv
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -23,6 +24,7 @@
 #include "common/patient_threads.hpp"
 #include "common/plausible_state.hpp"
 #include "common/warnings.hpp"
+#include "transfer_tool/assign/strength_table.hpp"
 #include "transfer_tool/audit/audit.hpp"
 #include "transfer_tool/audit/particle_set.hpp"
 #include "transfer_tool/import/import_tables.hpp"
@@ -122,6 +124,23 @@ void import(const std::string& case_path, const std::string& output_path) {
              snapshot.region_names.size(), snapshot.time, output_path);
 }
 
+struct StrengthOptions {
+  std::string case_path, output_path;
+  std::vector<double> percentiles = {16, 33, 50, 84};  // %
+  double highest = 400;                                // kPa, sigma'_v0
+};
+
+void strength(const StrengthOptions& options) {
+  if (!options.output_path.empty()) check_output_file(options.output_path);
+  constexpr std::size_t points = 161;  // even steps of 2.5 kPa up to 400 kPa
+  const CaseFile file(options.case_path);
+  const auto curves = strength_curves(file, options.percentiles);
+  fmt::print("{}", strength_text(curves, 1e3 * options.highest));
+  if (options.output_path.empty()) return;
+  write_text_file(options.output_path, strength_csv(curves, 1e3 * options.highest, points));
+  spdlog::info("wrote {}", options.output_path);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -157,6 +176,20 @@ int main(int argc, char** argv) {
   import_command->add_option("case", import_path, "import.json")->required();
   import_command->add_option("-o,--output", snapshot_path, "Snapshot to write")->required();
   import_command->callback([&] { import(import_path, snapshot_path); });
+
+  StrengthOptions strength_options;
+  auto* strength_command = app.add_subcommand(
+      "strength", "Residual strengths over sigma'_v0: the case's own, and other models for the same soil");
+  strength_command->add_option("case", strength_options.case_path, "transfer.json")->required();
+  strength_command->add_option("-o,--output", strength_options.output_path,
+                               "CSV to write (cases/plot/strength_plot.py draws it)");
+  strength_command
+      ->add_option("--percentiles", strength_options.percentiles, "Of models that know them, in %: 16,33,50,84")
+      ->delimiter(',')
+      ->check(CLI::Range(0.01, 99.99));
+  strength_command->add_option("--stress-to", strength_options.highest, "Largest sigma'_v0, in kPa (400)")
+      ->check(CLI::Range(1.0, 1e5));
+  strength_command->callback([&] { strength(strength_options); });
 
   return tailrun::run_application(app, argc, argv);
 }

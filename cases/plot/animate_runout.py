@@ -13,6 +13,8 @@ import chain_files as chain
 import field_plot as fields
 import runout_plot as runout
 import style
+from palette import Palette
+from runout_marks import Marks
 
 
 def main():
@@ -30,8 +32,10 @@ def main():
     view = runout.runout_view(first, last, chain.plot_options(arguments.case))
     figure, axis = plt.subplots(figsize=(style.WIDTH, style.panel_height(view) + 0.9))
     figure.subplots_adjust(left=0.07, right=0.99, top=0.93, bottom=0.36)
-    dots = runout.draw_materials(figure, axis, first, view)
-    axis.legend(handles=runout.legend_handles(first), loc="upper center", bbox_to_anchor=(0.5, 0.0), borderaxespad=3.8, ncol=4)
+    palette = Palette(first)
+    dots = runout.draw_materials(figure, axis, first, view, palette)
+    Marks(first, arguments.folder).draw_ground(axis)
+    palette.legend(axis, first)
 
     output = arguments.output
     if shutil.which("ffmpeg"):
@@ -52,7 +56,7 @@ def main():
             dots.set_offsets(particles.position)
             dots.set_sizes(fields.marker_areas(particles, square_metre))
             if len(particles.position) != len(dots.get_facecolors()):
-                dots.set_facecolors(runout.colours_of(particles))
+                dots.set_facecolors(palette.colours(particles))
             axis.set_title(f"t = {particles.time:.1f} s")
             writer.grab_frame()
         for _ in range(2 * arguments.fps):

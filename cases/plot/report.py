@@ -14,6 +14,7 @@ import results
 import runout_plot as runout
 import style
 from overview import plot_overview
+from runout_marks import Marks
 
 SECTIONS = [
     ("The chain at a glance", [("overview.png", "r_u at the hand-over, the particles, the runout")]),
@@ -34,7 +35,7 @@ SECTIONS = [
             ("handover.png", "particles by material"),
             ("displacement_mpm.png", "displacement added by the MPM phase"),
             ("runout.png", "runout in stages"),
-            ("runout_front.png", "front, highest point and speed over time"),
+            ("runout_front.png", "runout from the toe, highest ground over the dam, and speed over time"),
             ("energy.png", "energy ledger"),
         ],
     ),
@@ -80,7 +81,7 @@ def main():
     snapshot = chain.snapshot_at(arguments.folder / "fem", arguments.time)
     first, last, _ = runout.first_and_last(phase / "mpm")
     options = chain.plot_options(arguments.case)
-    plot_overview(plt, snapshot, first, last, options, arguments.output.parent / "overview.png")
+    plot_overview(plt, snapshot, first, last, Marks(first, phase / "mpm"), options, arguments.output.parent / "overview.png")
     title = chain.summary(phase / "mpm" / "summary.json").get("title", arguments.case.name)
     text = page(title, results.collect(arguments.folder, phase), arguments.output.parent)
     temporary = arguments.output.with_name(".part_" + arguments.output.name)

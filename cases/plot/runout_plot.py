@@ -37,33 +37,10 @@ def displacement_at_transfer(first, last):
     return np.zeros_like(last.data["displacement"])
 
 
-def colours_of(particles):
-    table = style.material_colours(particles.material_names)
-    return np.array([table[name] for name in particles.material_names])[particles.material()]
-
-
-def legend_handles(particles):
-    """One patch per material; liquefied ones say their mean strength."""
-    from matplotlib.patches import Patch
-
-    table = style.material_colours(particles.material_names)
-    handles = []
-    strength = particles.data.get("residual_strength")
-    for index, name in enumerate(particles.material_names):
-        mask = particles.material() == index
-        if not mask.any():
-            continue
-        label = name.replace("_", " ")
-        if strength is not None and strength[mask].max() > 0.0:
-            label = f"liquefied, $s_R$ {strength[mask].mean() / 1e3:.1f} kPa"
-        handles.append(Patch(color=table[name], label=label))
-    return handles
-
-
-def draw_materials(figure, axis, particles, view):
+def draw_materials(figure, axis, particles, view, palette):
     fields.draw_terrain(axis, particles, view[2] - 1.0)
     style.true_aspect(axis, view)
-    return fields.draw_particles(figure, axis, particles, colours_of(particles))
+    return fields.draw_particles(figure, axis, particles, palette.colours(particles))
 
 
 def first_and_last(folder):

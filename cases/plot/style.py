@@ -61,17 +61,8 @@ def region_colour(name, index=0):
 
 
 def material_colours(names):
-    """A colour per material: liquefied bins in shades from weak to strong, others by their region's colour."""
-    import matplotlib
-
-    colours = {}
-    liquefied = [name for name in names if name.startswith("liquefied")]
-    shades = matplotlib.colormaps[LIQUEFIED_COLOURS](np.linspace(0.3, 0.95, max(len(liquefied), 1)))
-    for name, shade in zip(liquefied, shades):
-        colours[name] = matplotlib.colors.to_hex(shade)
-    for index, name in enumerate(names):
-        colours.setdefault(name, region_colour(name, index))
-    return colours
+    """A colour per material: that of its region's name."""
+    return {name: region_colour(name, index) for index, name in enumerate(names)}
 
 
 def nice_limit(value):

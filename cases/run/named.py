@@ -56,6 +56,8 @@ def donors(fem, phase, own=None):
         for path in sorted((base / "runs").glob("*")) + sorted((base / "runs").glob(".*.before")) + sorted((base / "runs").glob(".*.refused")):
             words = f"run {path.name}" if not path.name.startswith(".") else f"an earlier {path.name.split('.')[1]}"
             found.append((words, path))
+        # What the members of a sweep share; of the members themselves only their numbers stay.
+        found += [("a sweep", path) for path in sorted((base / "store").glob("*-*")) if not path.name.startswith("mpm-")]
     return [(words, path) for words, path in found if path.is_dir() and path != own]
 
 

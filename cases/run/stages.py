@@ -208,6 +208,9 @@ class Chain:
         return [str(word) for word in command]
 
 
+SIGNALS = []  # that call() has passed on: a program that ended after one was interrupted and has not failed
+
+
 def call(command):
     """Runs a command to its end, however this process is asked to stop: the program keeps its state and says so."""
     import signal
@@ -217,6 +220,7 @@ def call(command):
 
     def pass_on(number, _):
         asked.append(number)
+        SIGNALS.append(number)
         # Ctrl-C reaches the program by itself.
         if process is not None and number == signal.SIGTERM:
             process.send_signal(number)

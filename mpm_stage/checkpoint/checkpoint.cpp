@@ -114,8 +114,8 @@ void for_each_value(LedgerRow& r, Action action) {
 
 template <class Action>
 void for_each_value(FrontRow& r, Action action) {
-  for (double* x : {&r.time, &r.front, &r.robust_front, &r.flow_front, &r.flowed_mass, &r.top, &r.centre_x, &r.centre_y,
-                    &r.rms_speed, &r.maximum_speed})
+  for (double* x : {&r.time, &r.front, &r.robust_front, &r.flow_front, &r.flow_body, &r.coherent_front, &r.ground,
+                    &r.flowed_mass, &r.top, &r.centre_x, &r.centre_y, &r.rms_speed, &r.maximum_speed})
     action(*x);
   for (double& x : r.points) action(x);
 }

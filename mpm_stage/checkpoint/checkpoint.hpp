@@ -15,7 +15,7 @@
 
 namespace tailrun::mpm {
 
-constexpr int checkpoint_format_version = 4;
+constexpr int checkpoint_format_version = 5;
 
 // What the run loop has to remember besides the solver.
 struct RunState {

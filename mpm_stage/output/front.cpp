@@ -12,7 +12,8 @@
 namespace tailrun::mpm {
 
 template <int Dim>
-FrontSeries<Dim>::FrontSeries(const Scene& scene) : output_(scene.output), start_(scene.particles.position) {
+FrontSeries<Dim>::FrontSeries(const Scene& scene)
+    : output_(scene.output), start_(scene.particles.position), cell_size_(scene.cell_size) {
   bool any = false;
   for (const auto& m : scene.materials) {
     moving_.push_back(m.law->moves);
@@ -20,6 +21,15 @@ FrontSeries<Dim>::FrontSeries(const Scene& scene) : output_(scene.output), start
   }
   if (!any) moving_.assign(moving_.size(), true);
   const ParticleSet& set = scene.particles;
+  const std::vector<double> before = positions_before(set);
+  std::vector<bool> moves(set.count());
+  for (std::size_t p = 0; p < set.count(); ++p) moves[p] = moving_[static_cast<std::size_t>(set.material_id[p])];
+  toe_ = output_.toe ? *output_.toe : outermost(before, moves, output_.front_axis, output_.front_sign);
+  footprint_ = output_.footprint ? *output_.footprint
+                                 : footprint_of(before, moves, output_.front_axis, output_.front_sign, toe_);
+  ground_.emplace(Dim, output_.front_axis, footprint_, cell_size_);
+  ground_before_ =
+      (*ground_)(set.count(), [&before](std::size_t p, int d) { return before[3 * p + static_cast<std::size_t>(d)]; });
   // The crest, unless points are named: the highest moving particle, and of those at the same height the outermost.
   if (output_.points.empty()) {
     double top = -std::numeric_limits<double>::infinity(), out = top;
@@ -48,22 +58,6 @@ FrontSeries<Dim>::FrontSeries(const Scene& scene) : output_(scene.output), start
     }
     followed_.push_back(nearest);
   }
-}
-
-// Position ahead of which only 1 - quantile of `mass` lies.
-template <int Dim>
-double FrontSeries<Dim>::quantile_front(Ahead& particles, double mass) const {
-  if (particles.empty()) return std::nan("");
-  // Only the leading part has to be in order.
-  const auto ahead = [](const auto& a, const auto& b) { return a.first > b.first; };
-  const double beyond = 1.0 - output_.front_quantile;
-  const std::size_t some =
-      std::min(particles.size(), 8 + static_cast<std::size_t>(4.0 * beyond * static_cast<double>(particles.size())));
-  std::partial_sort(particles.begin(), particles.begin() + static_cast<std::ptrdiff_t>(some), particles.end(), ahead);
-  double sum = 0.0;
-  std::size_t k = 0;
-  while (k + 1 < some && sum + particles[k].second < beyond * mass) sum += particles[k++].second;
-  return output_.front_sign * particles[k].first;
 }
 
 template <int Dim>
@@ -102,9 +96,14 @@ const FrontRow& FrontSeries<Dim>::sample(double time, const Particles<Dim>& P) {
       row.flowed_mass += P.mass[p];
     }
   }
-  row.flow_front = quantile_front(flowed_, row.flowed_mass);
+  put_foremost_first(scratch_, output_.front_quantile);
+  put_foremost_first(flowed_);
+  row.flow_front = output_.front_sign * quantile_front(flowed_, output_.front_quantile);
+  row.flow_body = output_.front_sign * quantile_front(flowed_, output_.body_quantile);
+  row.coherent_front = output_.front_sign * coherent_front(scratch_, flowed_, coherent_gap * cell_size_);
+  row.ground = (*ground_)(P.count(), [&P](std::size_t p, int d) { return P.position[d][p]; });
   if (!scratch_.empty()) {
-    row.robust_front = quantile_front(scratch_, mass);
+    row.robust_front = output_.front_sign * quantile_front(scratch_, output_.front_quantile);
     row.front = output_.front_sign * scratch_.front().first;
     row.centre_x /= mass;
     row.centre_y /= mass;
@@ -132,13 +131,13 @@ template <int Dim>
 void FrontSeries<Dim>::write(const std::filesystem::path& path) const {
   std::string text =
       "time_s,front_m,robust_front_m,top_m,centre_x_m,centre_y_m,rms_speed_m_s,maximum_speed_m_s,flow_front_m,flowed_"
-      "mass_kg";
+      "mass_kg,flow_body_m,coherent_front_m,runout_m,ground_m";
   for (const auto& p : output_.points) text += fmt::format(",{0}_x_m,{0}_y_m", p.name);
   text += "\n";
   for (const auto& r : rows_) {
     text += fmt::format("{:.9g}", r.time);
     for (const double x : {r.front, r.robust_front, r.top, r.centre_x, r.centre_y, r.rms_speed, r.maximum_speed,
-                           r.flow_front, r.flowed_mass})
+                           r.flow_front, r.flowed_mass, r.flow_body, r.coherent_front, runout(r.flow_front), r.ground})
       text += csv_cell(x, 9);
     for (const double x : r.points) text += csv_cell(x, 9);
     text += "\n";

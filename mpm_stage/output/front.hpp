@@ -1,11 +1,14 @@
-// Where the mass has got to: the front, the top, and points that are followed; and whether it has come to rest.
+// Where the mass has got to: the front, the runout, the top, and points that are followed; and whether it has come to
+// rest. What runout and ground are is said in runout_measures.hpp.
 #pragma once
 
 #include <array>
 #include <deque>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
+#include "mpm_stage/output/runout_measures.hpp"
 #include "mpm_stage/scene/scene.hpp"
 
 namespace tailrun::mpm {
@@ -15,6 +18,9 @@ struct FrontRow {
   double front = 0.0;                     // m, outermost moving particle
   double robust_front = 0.0;              // m, ahead of which only 1 - quantile of the moving mass lies
   double flow_front = 0.0;                // m, the same for the mass that has flowed (OutputOptions::flow_distance)
+  double flow_body = 0.0;                 // m, the same with OutputOptions::body_quantile
+  double coherent_front = 0.0;            // m, outermost of what has flowed without a gap behind it
+  double ground = 0.0;                    // m, highest ground over the dam's footprint
   double flowed_mass = 0.0;               // kg
   double top = 0.0;                       // m, highest moving particle
   double centre_x = 0.0, centre_y = 0.0;  // m, of the moving mass
@@ -32,6 +38,11 @@ class FrontSeries {
   // Both thresholds of the criterion have held for its whole duration.
   bool at_rest(const RestCriterion& rest) const;
   const std::vector<FrontRow>& rows() const { return rows_; }
+  double toe() const { return toe_; }                                    // m, before the motion
+  const std::array<double, 2>& footprint() const { return footprint_; }  // m, along the flow, before the motion
+  double ground_before() const { return ground_before_; }                // m, over it, before the motion
+  // m, from the toe to `front` of a row (a position), along the flow.
+  double runout(double front) const { return output_.front_sign * (front - toe_); }
   void restore(std::vector<FrontRow> rows) { rows_ = std::move(rows); }
   void write(const std::filesystem::path& path) const;
 
@@ -40,10 +51,11 @@ class FrontSeries {
   OutputOptions output_;
   std::vector<std::int32_t> followed_;  // identities
   std::vector<FrontRow> rows_;
-  std::vector<double> start_;                            // m, (particles, 3), by identity
-  using Ahead = std::vector<std::pair<double, double>>;  // coordinate along the front's direction, mass
-  double quantile_front(Ahead& particles, double mass) const;
+  std::vector<double> start_;  // m, (particles, 3), by identity
   Ahead scratch_, flowed_;
+  double cell_size_, toe_ = 0.0, ground_before_ = 0.0;
+  std::array<double, 2> footprint_{};
+  std::optional<GroundOverFootprint> ground_;
 };
 
 }  // namespace tailrun::mpm

@@ -74,6 +74,33 @@ Json features(const Scene& scene) {
   return {{"chosen", chosen}, {"skipped", skipped}};
 }
 
+// Strengths that were computed with, and what gave them.
+Json strengths(const Scene& scene) {
+  Json list = Json::array();
+  for (const StrengthInUse& use : scene.strengths) {
+    const StrengthTally& t = use.found;
+    Json j = {{"material", use.material}, {"particles", t.count}, {"from", use.from}};
+    j["law"] = use.law;
+    j["factor"] = use.factor;
+    if (use.has_stress) j["initial_vertical_effective_stress_Pa"] = t.stress.json(t.count);
+    j["strength_Pa"] = t.strength.json(t.count);
+    if (use.from == "mpm.json") {
+      j["capped_by_drained_strength"] = t.capped;
+      j["raised_to_lower_bound"] = t.raised;
+      j["outside_of_domain"] = t.outside;
+    }
+    if (use.steps.size() <= StrengthInUse::most_steps)
+      for (const auto& [strength, step] : use.steps) {
+        Json s = {{"strength_Pa", strength}, {"particles", step.first}};
+        if (use.has_stress)
+          s["mean_initial_vertical_effective_stress_Pa"] = step.second / static_cast<double>(step.first);
+        j["steps"].push_back(s);
+      }
+    list.push_back(j);
+  }
+  return list;
+}
+
 // m, since the start of this run.
 template <int Dim>
 double largest_displacement(const Scene& scene, const Particles<Dim>& P) {
@@ -89,6 +116,34 @@ double largest_displacement(const Scene& scene, const Particles<Dim>& P) {
   return std::sqrt(most);
 }
 
+// NaN is null.
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
+
+// Where what flowed stands, measured from the toe, and how much height the dam has lost (runout_measures.hpp).
+template <int Dim>
+void tell_runout(const Scene& scene, const FrontSeries<Dim>& front, Json& j) {
+  const FrontRow& last = front.rows().back();
+  double largest = std::nan("");
+  for (const auto& row : front.rows())
+    if (!(front.runout(row.flow_front) <= largest) && std::isfinite(row.flow_front))
+      largest = front.runout(row.flow_front);
+  j["front_direction"] = fmt::format("{}{}", scene.output.front_sign > 0.0 ? '+' : '-', "xyz"[scene.output.front_axis]);
+  j["initial_toe_m"] = front.toe();
+  j["flow_front_position_m"] = number(last.flow_front);
+  j["runout_m"] = number(front.runout(last.flow_front));
+  j["runout_of_body_m"] = number(front.runout(last.flow_body));
+  j["coherent_runout_m"] = number(front.runout(last.coherent_front));
+  j["largest_runout_m"] = number(largest);
+  j["runout_quantiles"] = {scene.output.front_quantile, scene.output.body_quantile};
+  j["flow_distance_m"] = scene.output.flow_distance;
+  j["footprint_m"] = front.footprint();
+  j["ground_before_m"] = number(front.ground_before());
+  j["ground_after_m"] = number(last.ground);
+  j["freeboard_lost_m"] = number(front.ground_before() - last.ground);
+}
+
 }  // namespace
 
 template <int Dim>
@@ -96,14 +151,10 @@ Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& reco
                   const FrontSeries<Dim>& front) {
   const PhaseSeconds& s = solver.seconds();
   const LedgerRow &first = ledger.rows().front(), &last = ledger.rows().back();
-  const FrontRow &f0 = front.rows().front(), &f1 = front.rows().back();
+  const FrontRow& f1 = front.rows().back();
   const double compute = s.grid + s.grid_to_particles + s.volumetric + s.stress_and_scatter + s.sort;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  double outermost = f0.robust_front;
-  for (const auto& r : front.rows())
-    if (scene.output.front_sign * (r.robust_front - outermost) > 0.0) outermost = r.robust_front;
-
   Json j;
   j["title"] = scene.title;
   j["version"] = version();
@@ -121,9 +172,7 @@ Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& reco
   j["dt_max_s"] = record.dt_max;
   j["front_position_m"] = f1.front;
   j["robust_front_position_m"] = f1.robust_front;
-  j["runout_m"] = scene.output.front_sign * (f1.robust_front - f0.robust_front);
-  j["largest_runout_m"] = scene.output.front_sign * (outermost - f0.robust_front);
-  if (f1.flowed_mass > 0.0) j["flow_front_position_m"] = f1.flow_front;
+  tell_runout(scene, front, j);
   j["flowed_mass_kg"] = f1.flowed_mass;
   j["largest_displacement_m"] = largest_displacement(scene, solver.particles());
   j["top_m"] = f1.top;
@@ -177,6 +226,7 @@ Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& reco
     }
     j["ponds"].push_back(said);
   }
+  if (!scene.strengths.empty()) j["residual_strength"] = strengths(scene);
   j["features"] = features(scene);
   j["remarks"] = scene.remarks;
   j["warnings"] = warnings();

@@ -114,14 +114,18 @@ class Runout {
     }
     finish();
     std::filesystem::remove(checkpoint_);
-    const auto& f = front_.rows();
+    const FrontRow& f = front_.rows().back();
+    const std::string flow =
+        f.flowed_mass > 0.0
+            ? fmt::format("{:.4g} t moved by more than {:g} m, runout {:.2f} m from the toe at {:.2f} m",
+                          f.flowed_mass / 1e3, scene_.output.flow_distance, front_.runout(f.flow_front), front_.toe())
+            : fmt::format("nothing moved by more than {:g} m", scene_.output.flow_distance);
     const double turnover = std::max(ledger_.turnover(), 1e-300);
     fmt::print(
-        "{}: {} after {:.3f} s, {} steps; front {:.3f} m -> {:.3f} m; of {:.4g} J turned over the scheme lost "
+        "{}: {} after {:.3f} s, {} steps; {}; of {:.4g} J turned over the scheme lost "
         "{:.1f} %, residual {:.2f} %\n",
-        scene_.title, record_.stop_reason, record_.time, record_.steps, f.front().robust_front, f.back().robust_front,
-        ledger_.turnover(), 100.0 * ledger_.rows().back().lost / turnover,
-        100.0 * ledger_.rows().back().residual / turnover);
+        scene_.title, record_.stop_reason, record_.time, record_.steps, flow, ledger_.turnover(),
+        100.0 * ledger_.rows().back().lost / turnover, 100.0 * ledger_.rows().back().residual / turnover);
   }
 
  private:

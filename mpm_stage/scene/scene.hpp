@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "common/case_file.hpp"
 #include "common/motion.hpp"
 #include "common/particles.hpp"
+#include "common/residual_strength/strength_tally.hpp"
 #include "mpm_stage/boundary/terrain.hpp"
 #include "mpm_stage/boundary/walls.hpp"
 #include "mpm_stage/material/material.hpp"
@@ -35,7 +37,10 @@ struct OutputOptions {
   int front_axis = 0;             // coordinate along which the front runs
   double front_sign = 1.0;        // +1: towards larger coordinates
   double front_quantile = 0.999;  // 1, share of the moving mass behind the robust front
+  double body_quantile = 0.9;     // 1, the same of the flow's body
   double flow_distance = 1.0;     // m, what has moved farther than this counts as flowed
+  std::optional<double> toe;      // m, where the dam ended before the motion; unless given the outermost moving soil
+  std::optional<std::array<double, 2>> footprint;  // m, of the dam along the flow; unless given from crest to toe
   std::vector<TrackedPoint> points;
 };
 
@@ -54,6 +59,21 @@ struct TerrainInput {
   bool adhere = false;
 };
 
+// The strength of soil whose shear strength is all that it has (MaterialLaw::residual_strength), as this run takes it:
+// one entry for each material and law that gave it.
+struct StrengthInUse {
+  std::string material;
+  std::string from;            // "hand-over", "mpm.json" (chosen again here), or "cohesion" (of the material)
+  nlohmann::ordered_json law;  // with all its inputs; null where it is not known
+  double factor = 1.0;         // 1, on what the law gives
+  StrengthTally found;         // with that factor in the strengths; bounds are counted where the law was chosen here
+  bool has_stress = false;     // whether sigma'_v0 is known
+  // Number of particles and sum of sigma'_v0 (Pa) by strength (Pa), of laws that give few; of others it is not
+  // complete.
+  std::map<double, std::pair<long, double>> steps;
+  static constexpr std::size_t most_steps = 12;
+};
+
 struct Scene {
   std::string title;
   int dimension = 2;
@@ -68,6 +88,7 @@ struct Scene {
   std::vector<Material> materials;  // in the order of ParticleSet::material_names
   ParticleSet particles;            // rigid materials already taken out
   std::vector<double> cohesion;     // Pa, per particle
+  std::vector<StrengthInUse> strengths;
   // 1/s, (n, 9), d v_i / d x_j at [3 i + j], of particles made here; empty where none is known.
   std::vector<double> velocity_gradient;
   Terrain terrain;
@@ -94,8 +115,9 @@ std::vector<Pond> read_ponds(const CaseNode& root, const Scene& scene);
 // The scene's ponds with their levels at `time` (s), as a particles file has them; their ranges along x only.
 std::vector<PondedReach> ponds_at(const Scene& scene, double time);
 std::vector<MovingBody<3>> read_bodies(const CaseNode& root, int dimension);
-std::vector<double> assign_cohesion(const CaseFile& file, const std::vector<Material>& materials,
-                                    ParticleSet& particles);
+// Needs the scene's materials and particles. Gives the particles the strengths that "residual_strength" chooses again,
+// and the scene its cohesion and strengths; the particles' residual_strength is then what they compute with.
+void assign_strength(const CaseFile& file, Scene& scene);
 
 // Whether the particles lie where they can be computed: on the material's side of each terrain line, and no more of
 // them in a place than it has room for. Throws InputError, or adds to the scene's remarks (placement_checks.cpp).

@@ -125,6 +125,14 @@ void read_output(const CaseNode& root, Scene& scene) {
   if (o.front_axis >= scene.dimension) node.fail("front_direction", "z needs dimension 3");
   o.flow_distance = node.number_or("flow_distance", "m", Range::positive(), o.flow_distance);
   o.front_quantile = node.number_or("front_quantile", "1", Range::between(0.5, 1.0), o.front_quantile);
+  o.body_quantile = node.number_or("body_quantile", "1", Range::between(0.5, o.front_quantile),
+                                   std::min(o.body_quantile, o.front_quantile));
+  o.toe = node.number_if("toe", "m", Range::any());
+  if (node.has("footprint")) {
+    const auto ends = node.numbers("footprint", "m", Range::any(), 2);
+    if (!(ends[0] < ends[1])) node.fail("footprint", "the first number must be below the second");
+    o.footprint = {ends[0], ends[1]};
+  }
   for (const CaseNode& point : node.list_or_empty("points")) {
     const auto x = point.numbers("position", "m", Range::any(), 2);
     o.points.push_back({point.text("name"), {x[0], x[1]}});
@@ -181,10 +189,30 @@ void drop_rigid(Scene& scene) {
   keep_rows(set.depth, rows, n);
   keep_rows(set.excess_pore_pressure_ratio, rows, n);
   keep_rows(set.residual_strength, rows, n);
+  keep_rows(set.strength_law, rows, n);
   keep_rows(set.plastic_deviatoric_strain, rows, n);
   keep_rows(set.displacement, rows, n);
   for (auto& [name, values] : set.extra) keep_rows(values, rows, n);
   keep_rows(set.mass, rows, n);
+}
+
+// Hand-overs of earlier versions made a material of each bin of a residual strength ("liquefied_1" ...).
+std::string word_on_bins(const std::string& name, const std::vector<std::string>& names) {
+  const auto is_there = [&names](const std::string& n) {
+    return std::find(names.begin(), names.end(), n) != names.end();
+  };
+  if (is_there(name + "_1"))
+    return fmt::format(
+        " Bins of a residual strength are no materials of their own any more: one entry '{}' takes the "
+        "place of '{}_1' and the following.",
+        name, name);
+  const std::size_t end = name.find_last_not_of("0123456789");
+  if (end != std::string::npos && end + 1 < name.size() && name[end] == '_' && is_there(name.substr(0, end)))
+    return fmt::format(
+        " The particles file was made by an earlier version, with a material for each bin; make the "
+        "hand-over again and they are all '{}'.",
+        name.substr(0, end));
+  return did_you_mean(name, names);
 }
 
 // Every material name of the particles file needs an entry; entries that no particle uses are only remarked on.
@@ -202,7 +230,7 @@ std::vector<Material> order_materials(const CaseFile& file, const std::vector<Ma
       if (used[k])
         throw InputError(fmt::format(
             "{}: /materials has no entry '{}', which particles of the particles file are made of (it has: {}).{}",
-            file.path().string(), name, joined(names), did_you_mean(name, names)));
+            file.path().string(), name, joined(names), word_on_bins(name, names)));
       ordered.push_back({});
       ordered.back().name = name;
       ordered.back().law = &law_named("rigid");
@@ -316,7 +344,7 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
   check_placement(root, scene);
   read_contact(root, scene);
   if (scene.solver.surface_share < 0.0) scene.solver.surface_share = default_surface_share(scene);
-  scene.cohesion = assign_cohesion(file, scene.materials, scene.particles);
+  assign_strength(file, scene);
   judge(root, scene);
   read_base_motion(root, scene);
   read_output(root, scene);

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "common/error.hpp"
+#include "common/residual_strength/strength_tally.hpp"
 
 namespace tailrun::transfer {
 namespace {
@@ -65,12 +66,6 @@ Range read_range(const CaseNode& node, const std::string& key, const char* unit)
   return range;
 }
 
-// What happened under one rule, for warnings and the record.
-struct Tally {
-  long count = 0, capped = 0, raised = 0, outside = 0;
-  double least = 1e300, most = 0.0, sum = 0.0;
-};
-
 // The particles file lists only materials that have particles, so that the particle stage asks for no others; the
 // order of the rules is kept.
 void drop_unused_materials(Assignment& assignment) {
@@ -86,17 +81,17 @@ void drop_unused_materials(Assignment& assignment) {
   assignment.material_names = std::move(names);
 }
 
-nlohmann::ordered_json record_of(const Rule& rule, const Tally& tally) {
-  nlohmann::ordered_json record = {{"material", rule.material}, {"points", tally.count}};
+nlohmann::ordered_json record_of(const Rule& rule, const StrengthTally& tally, long points) {
+  nlohmann::ordered_json record = {{"material", rule.material}, {"points", points}};
   if (!rule.strength) return record;
   auto strength = rule.strength->record;
   strength["capped_by_drained_strength"] = tally.capped;
   strength["raised_to_lower_bound"] = tally.raised;
   strength["outside_of_domain"] = tally.outside;
   if (tally.count > 0) {
-    strength["smallest_Pa"] = tally.least;
-    strength["mean_Pa"] = tally.sum / static_cast<double>(tally.count);
-    strength["largest_Pa"] = tally.most;
+    strength["smallest_Pa"] = tally.strength.least;
+    strength["mean_Pa"] = tally.strength.sum / static_cast<double>(tally.count);
+    strength["largest_Pa"] = tally.strength.most;
   }
   record["residual_strength"] = strength;
   return record;
@@ -159,15 +154,16 @@ Assignment assign(const Snapshot& snapshot, const SamplePoints& points, const Po
     if (place == names.end()) names.push_back(name);
     return id;
   };
-  // Names in the rules' order, bins included, so that ids do not depend on which point comes first.
-  std::vector<std::int32_t> first_id;
+  // Names in the rules' order, so that ids do not depend on which point comes first; laws likewise.
+  std::vector<std::int32_t> id_of_rule, law_of_rule;
   for (const auto& rule : rules) {
-    const std::size_t bins = rule.strength ? rule.strength->bin_strengths.size() : 0;
-    first_id.push_back(bins ? material(rule.material + "_1") : material(rule.material));
-    for (std::size_t bin = 2; bin <= bins; ++bin) material(fmt::format("{}_{}", rule.material, bin));
+    id_of_rule.push_back(material(rule.material));
+    law_of_rule.push_back(rule.strength ? static_cast<std::int32_t>(result.strength_laws.size()) : -1);
+    if (rule.strength) result.strength_laws.push_back(rule.strength->record.dump());
   }
 
-  std::vector<Tally> tallies(rules.size());
+  std::vector<StrengthTally> tallies(rules.size());
+  std::vector<long> matches(rules.size(), 0);
   std::map<std::int32_t, long> unmatched;
   for (std::size_t p = 0; p < points.count(); ++p) {
     const std::int32_t region = snapshot.region_id[static_cast<std::size_t>(points.element[p])];
@@ -177,21 +173,14 @@ Assignment assign(const Snapshot& snapshot, const SamplePoints& points, const Po
       ++unmatched[region];
       continue;
     }
-    Tally& tally = tallies[r];
-    ++tally.count;
-    std::int32_t id = first_id[r];
+    ++matches[r];
     Strength strength;
     if (rules[r].strength) {
       strength = (*rules[r].strength)(state.initial_vertical_effective_stress[p]);
-      if (strength.bin) id = material(fmt::format("{}_{}", rules[r].material, *strength.bin + 1));
-      tally.capped += strength.is_capped;
-      tally.raised += strength.is_raised;
-      tally.outside += strength.is_outside;
-      tally.least = std::min(tally.least, strength.value);
-      tally.most = std::max(tally.most, strength.value);
-      tally.sum += strength.value;
+      tallies[r].add(state.initial_vertical_effective_stress[p], strength);
     }
-    result.material_id.push_back(id);
+    result.material_id.push_back(id_of_rule[r]);
+    result.strength_law.push_back(law_of_rule[r]);
     result.residual_strength.push_back(strength.value);
   }
   if (!unmatched.empty()) {
@@ -209,25 +198,15 @@ Assignment assign(const Snapshot& snapshot, const SamplePoints& points, const Po
   const auto is_present = [&](std::int32_t region) { return has_points[static_cast<std::size_t>(region)]; };
   result.record = nlohmann::ordered_json::array();
   for (std::size_t r = 0; r < rules.size(); ++r) {
-    const Tally& tally = tallies[r];
-    result.matches.push_back(tally.count);
-    result.record.push_back(record_of(rules[r], tally));
+    result.matches.push_back(matches[r]);
+    result.record.push_back(record_of(rules[r], tallies[r], matches[r]));
     const auto& asked = rules[r].when.regions;
     // A rule for regions that are left out altogether is there for the day when they are not.
-    if (tally.count == 0 && (asked.empty() || std::any_of(asked.begin(), asked.end(), is_present)))
+    if (matches[r] == 0 && (asked.empty() || std::any_of(asked.begin(), asked.end(), is_present)))
       result.warnings.push_back(fmt::format("rule {} (material '{}') fits no point", r, rules[r].material));
     if (!rules[r].strength) continue;
-    for (const auto& warning : rules[r].strength->warnings)
+    for (const auto& warning : tallies[r].warnings(*rules[r].strength))
       result.warnings.push_back(fmt::format("rule {} ({}): {}", r, rules[r].strength->model, warning));
-    if (2 * tally.raised > tally.count)
-      result.warnings.push_back(fmt::format(
-          "rule {} ({}): {} of {} points have so little strength that it was raised to the lower bound; are "
-          "strengths and stresses in Pa?",
-          r, rules[r].strength->model, tally.raised, tally.count));
-    if (tally.outside > 0)
-      result.warnings.push_back(fmt::format(
-          "rule {} ({}): {} of {} points have sigma'_v0 outside of {:g} to {:g} kPa", r, rules[r].strength->model,
-          tally.outside, tally.count, rules[r].strength->domain.first / 1e3, rules[r].strength->domain.second / 1e3));
   }
   return result;
 }

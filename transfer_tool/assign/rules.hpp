@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "common/case_file.hpp"
+#include "common/residual_strength/strength_law.hpp"
 #include "common/snapshot.hpp"
-#include "transfer_tool/assign/strength_law.hpp"
 #include "transfer_tool/map/map_state.hpp"
 #include "transfer_tool/sample/sample.hpp"
 
@@ -49,8 +49,10 @@ std::int32_t region_index(const CaseNode& node, const std::string& key, const st
 struct Assignment {
   std::vector<std::string> material_names;
   std::vector<std::int32_t> material_id;
-  std::vector<double> residual_strength;  // Pa, 0 where the rule has none
-  std::vector<long> matches;              // points by rule
+  std::vector<double> residual_strength;   // Pa, 0 where the rule has none
+  std::vector<std::int32_t> strength_law;  // index into strength_laws, -1 where the rule has none
+  std::vector<std::string> strength_laws;  // JSON, as StrengthLaw::record
+  std::vector<long> matches;               // points by rule
   std::vector<std::string> warnings;
   nlohmann::ordered_json record;  // rules, models, inputs, percentiles, bound hits
 };

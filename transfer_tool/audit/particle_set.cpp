@@ -32,6 +32,8 @@ ParticleSet particle_set(const Snapshot& snapshot, const SamplePoints& points, c
   particles.depth = state.depth;
   particles.excess_pore_pressure_ratio = state.excess_pore_pressure_ratio;
   particles.residual_strength = assignment.residual_strength;
+  particles.strength_law = assignment.strength_law;
+  particles.strength_laws = assignment.strength_laws;
   particles.plastic_deviatoric_strain.assign(n, 0.0);
   return particles;
 }

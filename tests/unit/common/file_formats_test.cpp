@@ -51,6 +51,8 @@ ParticleSet small_particles() {
   p.pore_pressure = {10, 20};
   p.material_id = {0, 0};
   p.residual_strength = {3200, 9100};
+  p.strength_law = {1, -1};
+  p.strength_laws = {"{}", "{\"model\": \"constant\"}"};
   p.extra["percentile"] = {0.5, 0.5};
   p.notes["audit"] = "{\"mass\": 3}";
   p.terrain = {{"bed", {0, 0, 10, 0}}};
@@ -89,6 +91,8 @@ TEST_CASE("particles come back as they were, with further fields and notes") {
   CHECK(r.ponds[0].density == 1030);
   CHECK(r.effective_stress == p.effective_stress);
   CHECK(r.residual_strength == p.residual_strength);
+  CHECK(r.strength_law == p.strength_law);
+  CHECK(r.strength_laws == p.strength_laws);
   CHECK(r.extra.at("percentile") == p.extra.at("percentile"));
   CHECK(r.notes.at("audit") == p.notes.at("audit"));
   CHECK(r.terrain.at(0).points == p.terrain[0].points);
@@ -105,6 +109,10 @@ TEST_CASE("the wrong file, a cut file and values that are not finite are refused
   write_particles(particles, p, {});
   CHECK_THROWS_AS(read_particles(particles), InputError);
   p.mass[1] = 1.0;
+  p.strength_law[1] = 2;
+  write_particles(particles, p, {});
+  CHECK_THROWS_AS(read_particles(particles), InputError);
+  p.strength_law[1] = -1;
   p.pore_pressure[0] = std::numeric_limits<double>::quiet_NaN();
   write_particles(particles, p, {});
   CHECK_THROWS_AS(read_particles(particles), InputError);

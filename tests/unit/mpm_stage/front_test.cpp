@@ -12,6 +12,7 @@ namespace {
 // Eleven particles at x = 0 .. 10, of one soil.
 Scene row_of_particles() {
   Scene scene;
+  scene.cell_size = 1.0;
   Material soil;
   soil.name = "soil";
   soil.law = &law_named("tresca");
@@ -62,4 +63,81 @@ TEST_CASE("one straggler does not make the robust front") {
   const FrontRow& row = front.sample(0.0, P);
   CHECK(row.front == doctest::Approx(500.0));
   CHECK(row.robust_front == doctest::Approx(9.0));
+}
+
+TEST_CASE("runout is measured from the toe before the motion to what has flowed; short of the toe it is negative") {
+  Scene scene = row_of_particles();
+  for (int i = 0; i <= 10; ++i)
+    scene.particles.displacement.insert(scene.particles.displacement.end(), {0.5, 0.0, 0.0});
+  FrontSeries<2> front(scene);
+  CHECK(front.toe() == doctest::Approx(9.5));
+  Particles<2> P = solver_row();
+  CHECK(std::isnan(front.sample(0.0, P).flow_front));
+  P.position[0][3] += 2.0;  // flows, and stays on the dam
+  CHECK(front.runout(front.sample(1.0, P).flow_front) == doctest::Approx(5.0 - 9.5));
+  P.position[0][3] += 20.0;
+  CHECK(front.runout(front.sample(2.0, P).flow_front) == doctest::Approx(25.0 - 9.5));
+}
+
+TEST_CASE("a flow towards smaller coordinates has its toe there, and the case may say where the toe is") {
+  Scene scene = row_of_particles();
+  scene.output.front_sign = -1.0;
+  FrontSeries<2> front(scene);
+  CHECK(front.toe() == doctest::Approx(0.0));
+  Particles<2> P = solver_row();
+  P.position[0][2] -= 7.0;
+  CHECK(front.runout(front.sample(1.0, P).flow_front) == doctest::Approx(5.0));
+  scene.output.toe = 4.0;
+  CHECK(FrontSeries<2>(scene).toe() == 4.0);
+}
+
+TEST_CASE("quantiles are of the mass that flowed") {
+  Ahead flowed;
+  for (int i = 0; i < 100; ++i) flowed.emplace_back(i, i < 90 ? 1.0 : 9.0);  // 180 kg, half of them beyond 90 m
+  put_foremost_first(flowed);
+  CHECK(quantile_front(flowed, 1.0) == 99.0);
+  CHECK(quantile_front(flowed, 0.9) == 98.0);
+  CHECK(quantile_front(flowed, 0.5) == 90.0);
+  CHECK(std::isnan(quantile_front({}, 0.5)));
+}
+
+TEST_CASE("the coherent front ends at the first gap; standing soil bridges one") {
+  const Ahead flowed = {{900.0, 1.0}, {13.0, 1.0}, {12.2, 1.0}, {8.5, 1.0},
+                        {8.0, 1.0},   {7.5, 1.0},  {7.0, 1.0},  {6.0, 1.0}};
+  CHECK(coherent_front(flowed, flowed, 1.0) == doctest::Approx(8.5));
+  Ahead all = flowed;
+  for (const double x : {9.4, 10.3, 11.25}) all.emplace_back(x, 1.0);
+  CHECK(coherent_front(all, flowed, 1.0) == doctest::Approx(13.0));
+  CHECK(std::isnan(coherent_front(all, {}, 1.0)));
+}
+
+TEST_CASE("ground is the highest coherent soil over the footprint, not a particle in the air or outside") {
+  const auto ground = [](const std::vector<std::array<double, 2>>& points) {
+    GroundOverFootprint measure(2, 0, {0.0, 4.0}, 1.0);
+    return measure(points.size(), [&](std::size_t p, int d) { return points[p][static_cast<std::size_t>(d)]; });
+  };
+  CHECK(ground({{0.5, 1.0}, {0.5, 1.9}, {0.4, 3.0}, {1.5, 1.5}, {7.0, 9.0}}) == doctest::Approx(1.9));
+  CHECK(ground({{3.5, 2.5}, {0.5, 1.0}}) == doctest::Approx(2.5));
+  CHECK(std::isnan(ground({{7.0, 9.0}})));
+}
+
+TEST_CASE("in 3-D the lowest strip along the flow is the ground that is left") {
+  const std::vector<std::array<double, 3>> points = {
+      {0.5, 5.0, 0.5}, {1.5, 2.0, 0.5}, {0.5, 1.0, 1.5}, {1.5, 3.0, 1.5}};
+  GroundOverFootprint measure(3, 0, {0.0, 4.0}, 1.0);
+  CHECK(measure(points.size(), [&](std::size_t p, int d) { return points[p][static_cast<std::size_t>(d)]; }) ==
+        doctest::Approx(3.0));
+}
+
+TEST_CASE(
+    "the footprint reaches from the crest to the toe, unless it is given, and freeboard follows the ground there") {
+  Scene scene = row_of_particles();
+  scene.particles.position[3 * 4 + 1] = 3.0;  // the crest, at x = 4
+  FrontSeries<2> front(scene);
+  CHECK(front.footprint() == std::array<double, 2>{4.0, 10.0});
+  CHECK(front.ground_before() == doctest::Approx(3.0));
+  Particles<2> P = solver_row();
+  CHECK(front.sample(0.0, P).ground == doctest::Approx(1.0));
+  scene.output.footprint = {{0.0, 2.0}};
+  CHECK(FrontSeries<2>(scene).ground_before() == doctest::Approx(1.0));
 }

@@ -78,15 +78,22 @@ TEST_CASE("bounds are open or closed as they say; all, any and none combine") {
   CHECK(count(R"({"none": [{"x": {"below": 1.0}}], "all": [{"depth": {"below": 3}}, {"depth": {"above": 1}}]})") == 2);
 }
 
-TEST_CASE("bins make numbered materials with their strengths; materials without points are left out") {
+TEST_CASE(
+    "names of materials do not depend on the model; each point knows its law; materials without points are left out") {
   const Column column;
-  const auto rules = rules_of(R"([{"material": "liquefied", "residual_strength":
-      {"model": "bins", "edges": [1e4, 2e4, 9e4], "strengths": [1000, 2000, 3000, 4000], "drained_cap": false}}])");
+  const auto rules = rules_of(R"([
+    {"material": "none", "when": {"depth": {"above": 99}}, "residual_strength": {"model": "constant", "strength": 5000}},
+    {"material": "liquefied", "when": {"region": "lower"}, "residual_strength":
+      {"model": "bins", "edges": [1e4, 2e4, 9e4], "strengths": [1000, 2000, 3000, 4000], "drained_cap": false}},
+    {"material": "rock"}])");
   const Assignment found = assign(column.mesh, column.points, column.state, rules);
-  CHECK(found.material_names == std::vector<std::string>{"liquefied_1", "liquefied_2", "liquefied_3"});
-  CHECK(found.material_id == std::vector<std::int32_t>{2, 2, 2, 2, 1, 1, 0, 0});
-  CHECK(found.residual_strength.front() == 3000.0);
-  CHECK(found.residual_strength.back() == 1000.0);
+  CHECK(found.material_names == std::vector<std::string>{"liquefied", "rock"});
+  CHECK(found.material_id == std::vector<std::int32_t>{0, 0, 0, 0, 1, 1, 1, 1});
+  CHECK(found.strength_law == std::vector<std::int32_t>{1, 1, 1, 1, -1, -1, -1, -1});
+  REQUIRE(found.strength_laws.size() == 2);
+  CHECK(nlohmann::json::parse(found.strength_laws[1])["edges"] == nlohmann::json{1e4, 2e4, 9e4});
+  REQUIRE(found.residual_strength.size() == 8);
+  for (std::size_t p = 0; p < 8; ++p) CHECK(found.residual_strength[p] == (p < 4 ? 3000.0 : 0.0));
 }
 
 TEST_CASE("what was done is recorded: model, inputs, percentile, bound hits") {

@@ -33,8 +33,8 @@ TEST_CASE("the Mochikoshi cases read without an unknown key and mean what the pa
     CHECK(wanted.sampling.kept_region[2] == (std::string(name) == "transfer_foundation.json"));
     CHECK_FALSE(wanted.sampling.kept_region[3]);
     REQUIRE(wanted.rules.size() == 4);
-    const StrengthLaw& law = *wanted.rules[0].strength;
-    REQUIRE(law.bin_strengths.size() == 5);
+    const tailrun::StrengthLaw& law = *wanted.rules[0].strength;
+    CHECK(law.record["strengths"].size() == 5);
     CHECK(law(17e3).value == 3200.0);
     CHECK(law(186e3).value == 9100.0);
     CHECK_FALSE(law.drained_cap);

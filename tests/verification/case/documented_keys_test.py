@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Every key that fem_stage and mpm_stage read from a case file, and every soil model of fem_stage, is in docs/fem.md or
-docs/mpm.md.
+docs/mpm.md; what transfer_tool reads is in docs/transfer.md.
 
 documented_keys_test.py REPOSITORY
 """
@@ -14,7 +14,9 @@ PAGES = {
                     "fem_stage/element_test/calibration.cpp"],
     "docs/mpm.md": ["mpm_stage/scene/scene_reader.cpp", "mpm_stage/scene/material_reader.cpp",
                     "mpm_stage/scene/terrain_reader.cpp", "mpm_stage/scene/particle_generator.cpp",
-                    "mpm_stage/scene/body_reader.cpp", "mpm_stage/scene/contact_reader.cpp", "mpm_stage/material/*.cpp"],
+                    "mpm_stage/scene/body_reader.cpp", "mpm_stage/scene/contact_reader.cpp", "mpm_stage/material/*.cpp",
+                    "common/residual_strength/*.cpp"],
+    "docs/transfer.md": ["transfer_tool/options/transfer_case.cpp", "common/residual_strength/*.cpp"],
 }
 READERS = ("number|number_or|number_if|integer|integer_or|boolean_or|text|text_or|texts_or|choice|choice_or|numbers|numbers_or|"
            "table|file|object|object_if|object_or_empty|list|list_or_empty")

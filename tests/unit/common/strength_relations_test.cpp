@@ -1,10 +1,10 @@
-#include "transfer_tool/assign/residual_strength.hpp"
+#include "common/residual_strength/relations.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 
-using namespace tailrun::transfer;
+using namespace tailrun;
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "transfer_tool/assign/residual_strength.hpp"
+#include "common/residual_strength/relations.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-namespace tailrun::transfer {
+namespace tailrun {
 namespace {
 
 constexpr double atmospheric = 101325.0;  // Pa
@@ -100,4 +100,4 @@ double robertson_2022_ratio(double q) {
   return q < 20.0 ? 0.02 : 0.0007 * std::exp(0.084 * q) + 0.3 / q;
 }
 
-}  // namespace tailrun::transfer
+}  // namespace tailrun

@@ -3,7 +3,7 @@
 // z = standard normal quantile of the wanted percentile (0: median). No caps here: strength_law.hpp has them.
 #pragma once
 
-namespace tailrun::transfer {
+namespace tailrun {
 
 // Quantile of the standard normal distribution, `probability` in (0, 1).
 double standard_normal_quantile(double probability);
@@ -39,4 +39,4 @@ double robertson_2010_ratio(double q_tncs);
 // Robertson (2022), I_c < 3: 0.02 below Q = 20, 0.0007 exp(0.084 Q) + 0.3/Q up to 80.
 double robertson_2022_ratio(double q_tncs);
 
-}  // namespace tailrun::transfer
+}  // namespace tailrun

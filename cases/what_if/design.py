@@ -1,0 +1,264 @@
+"""What a sweep varies: cases/<case>/sweep.json, read and checked, and the members that come of it.
+
+{
+  "design": "latin_hypercube",     or "sobol", "saltelli" (for Sobol' indices), "grid" (every combination of lists)
+  "members": 24,                   a list [24, 24]: batches, so that a Latin hypercube can grow; "saltelli": size of its two base samples
+  "seed": 1,
+  "parameters": {
+    "factor": { "key": "mpm:/residual_strength/factor", "distribution": "lognormal", "median": 1, "log_sd": 0.3, "low": 0.4, "high": 2 },
+    "friction": { "keys": ["mpm:/terrain/0/friction"], "values": [0.3, 0.35, 0.4] },
+    "strengths": { "key": "transfer:/rules/0/residual_strength/strengths", "distribution": "uniform", "low": 0.8, "high": 1.2, "scales": true },
+    "motion": { "key": "fem:/shake/motion", "folder": "motion", "pattern": "*.AT2" }
+  },
+  "correlations": [ { "between": ["factor", "strengths"], "rank": 0.5 } ]      Spearman's rank correlation
+}
+docs/what_if.md says more.
+"""
+
+import itertools
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+import paths  # noqa: F401
+import settings as what_if
+from case_part import read_case
+from distributions import Distribution, rounded
+from json_keys import DesignError, Keys, near
+from sample import copula, sample
+
+DESIGNS = ("latin_hypercube", "sobol", "saltelli", "grid")
+MOST_MEMBERS = 1000000
+
+
+@dataclass
+class Parameter:
+    name: str
+    keys: list  # "mpm:/residual_strength/factor"; all take the same value
+    base: object  # the case file's own value of the first key
+    distribution: Distribution = None
+    choices: list = None
+    scales: bool = False  # the value multiplies what the case file says
+
+    @property
+    def numeric(self):
+        return self.distribution is not None or all(isinstance(v, (int, float)) and not isinstance(v, bool) for v in self.choices)
+
+    def values(self, u):
+        if self.distribution is not None:
+            return self.distribution.values(u)
+        count = len(self.choices)
+        return [self.choices[min(int(part * count), count - 1)] for part in u]
+
+    def base_value(self):
+        return 1.0 if self.scales else self.base
+
+
+@dataclass
+class Design:
+    title: str
+    kind: str
+    batches: list
+    seed: int
+    parameters: list
+    members: list  # {parameter: value}, in order
+
+
+def at_pointer(content, pointer):
+    """The value there; KeyError(nearest words) with the part that is missing."""
+    way = ""
+    for key in (part.replace("~1", "/").replace("~0", "~") for part in pointer.split("/")[1:]):
+        known = content.keys() if isinstance(content, dict) else [str(k) for k in range(len(content))] if isinstance(content, list) else []
+        if key not in known:
+            raise KeyError(f"there is no '{key}' at '{way or '/'}'.{near(key, known)} There are: {', '.join(known) or 'none'}")
+        content = content[key] if isinstance(content, dict) else content[int(key)]
+        way += f"/{key}"
+    return content
+
+
+def file_value(keys, name, word, contents):
+    """What the case file says under `fem:/...`. A sweep varies what is written there, so that the base value is known and a misspelt key
+    is found before anything is computed."""
+    try:
+        parsed = what_if.parse(f"{word}=0")
+    except what_if.SettingError as error:
+        raise DesignError(f"{keys.at(name)}: {str(error).removeprefix('SET: ').replace(f'{word}=0', word)}") from None
+    if len(parsed) != 1 or any(len(texts) != 1 for texts in parsed.values()):
+        raise DesignError(f"{keys.at(name)}: '{word}' is not one key, like {what_if.EXAMPLE.split('=')[0]}")
+    stage = next(iter(parsed))
+    if stage not in contents:
+        raise DesignError(f"{keys.at(name)}: {word}: the case has no {stage}.json; it has {', '.join(f'{s}.json' for s in contents)}")
+    try:
+        return at_pointer(contents[stage], word.partition(":")[2])
+    except KeyError as error:
+        raise DesignError(f"{keys.at(name)}: {word}: in {stage}.json {error.args[0]}. A key to be varied has to be in the case file, "
+                          "with the value that the base run has") from None
+
+
+def files_of(keys, case_dir):
+    """Names, from the case's folder, of the motions in a folder."""
+    folder, pattern = keys.text("folder"), keys.text("pattern", "*")
+    place = Path(case_dir) / folder
+    if not place.is_dir():
+        raise DesignError(f"{keys.at('folder')}: there is no folder {place}")
+    found = sorted(path for path in place.glob(pattern) if path.is_file() and not path.name.startswith("."))
+    if not found:
+        there = ", ".join(sorted(path.name for path in place.iterdir())[:8])
+        raise DesignError(f"{keys.at('pattern')}: no file of {place} is like '{pattern}'; there are {there or 'none'}")
+    return [str(path.relative_to(case_dir)) for path in found]
+
+
+def scalable(value):
+    numbers = value if isinstance(value, list) else [value]
+    return bool(numbers) and all(isinstance(v, (int, float)) and not isinstance(v, bool) for v in numbers)
+
+
+def read_parameter(keys, name, case_dir, contents):
+    if keys.has("keys") == keys.has("key"):
+        raise DesignError(f"{keys.file}: {keys.pointer}: one of 'key' and 'keys' is needed")
+    where = "keys" if keys.has("keys") else "key"
+    words = keys.content[where] if where == "keys" else [keys.content[where]]
+    if not isinstance(words, list) or not words or not all(isinstance(word, str) for word in words):
+        keys.refuse(where, keys.content[where], "a key like " + what_if.EXAMPLE.split("=")[0])
+    base = [file_value(keys, where, word, contents) for word in words][0]
+    parameter = Parameter(name, words, base)
+    ways = [way for way in ("distribution", "values", "folder") if keys.has(way)]
+    if len(ways) != 1:
+        raise DesignError(f"{keys.file}: {keys.pointer}: one of 'distribution', 'values' and 'folder' says what it varies over; "
+                          f"{' and '.join(ways) or 'none'} found, with {', '.join(keys.content)}")
+    if ways == ["distribution"]:
+        parameter.distribution = Distribution(keys)
+    elif ways == ["values"]:
+        parameter.choices = keys.content["values"]
+        if not isinstance(parameter.choices, list) or not parameter.choices:
+            keys.refuse("values", parameter.choices, "a list of values")
+        if len({json.dumps(value, sort_keys=True) for value in parameter.choices}) != len(parameter.choices):
+            keys.refuse("values", parameter.choices, "a list of values that are all different")
+    else:
+        parameter.choices = files_of(keys, case_dir)
+    parameter.scales = keys.value("scales", False)
+    if not isinstance(parameter.scales, bool):
+        keys.refuse("scales", parameter.scales, "true or false")
+    for word in words:
+        if parameter.scales and not (scalable(file_value(keys, where, word, contents)) and parameter.numeric):
+            raise DesignError(f"{keys.at('scales')}: {word} is {keys.word(file_value(keys, where, word, contents))} in the case file: "
+                              "only a number or a list of numbers can be scaled, by numbers")
+    keys.finish()
+    return parameter
+
+
+def rank_correlations(keys, parameters):
+    """(n, n) matrix of Spearman's rank correlation."""
+    names = [parameter.name for parameter in parameters]
+    matrix = np.eye(len(names))
+    given = keys.value("correlations", [])
+    if not isinstance(given, list):
+        keys.refuse("correlations", given, "a list")
+    for index, entry in enumerate(given):
+        pair = Keys(keys.file, f"/correlations/{index}", entry)
+        between = pair.value("between", required=True)
+        if not isinstance(between, list) or len(between) != 2 or between[0] == between[1]:
+            pair.refuse("between", between, "two names of parameters")
+        for name in between:
+            if name not in names:
+                raise DesignError(f"{pair.at('between')}: there is no parameter '{name}'.{near(name, names)} There are {', '.join(names)}")
+            if parameters[names.index(name)].distribution is None:
+                raise DesignError(f"{pair.at('between')}: '{name}' is a list; only distributions can be correlated")
+        rank = pair.number("rank", required=True)
+        if not -1.0 < rank < 1.0:
+            pair.refuse("rank", rank, "a number between -1 and 1")
+        i, j = map(names.index, between)
+        matrix[i, j] = matrix[j, i] = rank
+        pair.finish()
+    return matrix
+
+
+def batches_of(keys, kind):
+    if kind == "grid":
+        if keys.has("members"):
+            raise DesignError(f"{keys.at('members')}: a grid has as many members as its lists have combinations; take the key out")
+        return []
+    given = keys.value("members", required=True)
+    batches = given if isinstance(given, list) else [given]
+    if not batches or not all(isinstance(count, int) and not isinstance(count, bool) and count > 0 for count in batches):
+        keys.refuse("members", given, "a whole number above 0, or a list of them,")
+    if len(batches) > 1 and kind != "latin_hypercube":
+        keys.refuse("members", given, f"one number (a {kind} design grows with it)")
+    if sum(batches) > MOST_MEMBERS:
+        keys.refuse("members", given, f"no more than {MOST_MEMBERS}")
+    return batches
+
+
+def members_of(kind, batches, seed, parameters, correlations, keys):
+    if kind == "grid":
+        for parameter in parameters:
+            if parameter.choices is None:
+                raise DesignError(f"{keys.file}: /parameters/{parameter.name}: a grid is made of lists ('values' or 'folder'), not of distributions")
+        combinations = itertools.product(*(parameter.choices for parameter in parameters))
+        return [{parameter.name: value for parameter, value in zip(parameters, values)} for values in combinations]
+    if kind == "saltelli" and not np.array_equal(correlations, np.eye(len(parameters))):
+        raise DesignError(f"{keys.at('correlations')}: Sobol' indices are for independent parameters; take the correlations out, or the design "
+                          "'latin_hypercube'")
+    try:
+        u = copula(sample(kind, batches, seed, len(parameters)), correlations)
+    except np.linalg.LinAlgError:
+        raise DesignError(f"{keys.at('correlations')}: these correlations contradict each other (their matrix is not positive definite)") from None
+    columns = [parameter.values(u[:, k]) for k, parameter in enumerate(parameters)]
+    return [{parameter.name: column[row] for parameter, column in zip(parameters, columns)} for row in range(len(u))]
+
+
+def read_design(path, case_dir):
+    """The Design of a sweep file. DesignError says what is wrong in it."""
+    path = Path(path)
+    contents = {stage: read_case(Path(case_dir) / f"{stage}.json") for stage in what_if.STAGES if (Path(case_dir) / f"{stage}.json").exists()}
+    if "mpm" not in contents:
+        raise DesignError(f"{case_dir}: the case has no mpm.json, so that nothing runs out")
+    try:
+        content = read_case(path)
+    except FileNotFoundError:
+        raise DesignError(f"{path}: there is no such file; docs/what_if.md says what it holds") from None
+    except ValueError as error:
+        raise DesignError(f"{path}: {error}") from None
+    return design_of(content, path, case_dir, contents)
+
+
+def design_of(content, path, case_dir, contents):
+    keys = Keys(path, "", content)
+    kind = keys.choice("design", DESIGNS, "latin_hypercube")
+    title, seed = keys.text("title", ""), keys.count("seed", 1, 0)
+    given = keys.value("parameters", required=True)
+    if not isinstance(given, dict) or not given:
+        keys.refuse("parameters", given, "an object with a parameter at least")
+    parameters = []
+    for name, entry in given.items():
+        if not name.replace("_", "").isalnum() or not name.isascii():
+            raise DesignError(f"{path}: /parameters: '{name}' cannot be a parameter's name: letters, digits and _ are allowed")
+        parameters.append(read_parameter(Keys(path, f"/parameters/{name}", entry), name, case_dir, contents))
+    words = [word for parameter in parameters for word in parameter.keys]
+    for word in words:
+        if words.count(word) > 1:
+            raise DesignError(f"{path}: /parameters: {word} is varied twice")
+    batches = batches_of(keys, kind)
+    correlations = rank_correlations(keys, parameters)
+    keys.finish()
+    members = members_of(kind, batches, seed, parameters, correlations, keys)
+    return Design(title, kind, batches, seed, parameters, members)
+
+
+def scaled(value, factor):
+    return [rounded(v * factor) for v in value] if isinstance(value, list) else rounded(value * factor)
+
+
+def settings_of(design, member, contents):
+    """Settings (settings.parse) of a member: {"mpm": ["/residual_strength/factor=0.5"], ...}."""
+    found = {}
+    for parameter in design.parameters:
+        for word in parameter.keys:
+            stage, _, pointer = word.partition(":")
+            value = member[parameter.name]
+            if parameter.scales:
+                value = scaled(at_pointer(contents[stage], pointer), value)
+            found.setdefault(stage, []).append(f"{pointer}={json.dumps(value)}")
+    return found
