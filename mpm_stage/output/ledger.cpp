@@ -62,7 +62,8 @@ LedgerRow Ledger<Dim>::measure(double time, Solver<Dim>& solver) const {
   row.work = solver.work();
   if (rows_.empty()) return row;
   const LedgerRow& first = rows_.front();
-  row.lost = first.total() + row.work.external + row.work.pore_pressure + row.work.crowding - losses(row.work) - row.total();
+  row.lost =
+      first.total() + row.work.external + row.work.pore_pressure + row.work.crowding - losses(row.work) - row.total();
   // A particle that left took its height's energy along, so mass that went is no longer comparable.
   if (row.mass < first.mass * (1.0 - 1e-12)) row.lost = std::nan("");
   row.residual = row.lost - (std::isnan(row.work.transfer) ? 0.0 : row.work.transfer + row.work.impact);
@@ -98,7 +99,8 @@ template <int Dim>
 void Ledger<Dim>::write(const std::filesystem::path& path) const {
   std::string text =
       "time_s,kinetic_J,elastic_J,gravitational_J,plastic_J,friction_J,contact_J,damping_J,external_J,pore_pressure_J,"
-      "crowding_J,transfer_J,impact_J,residual_J,mass_kg,momentum_x_Ns,momentum_y_Ns,momentum_z_Ns,angular_momentum_Nms\n";
+      "crowding_J,transfer_J,impact_J,residual_J,mass_kg,momentum_x_Ns,momentum_y_Ns,momentum_z_Ns,angular_momentum_"
+      "Nms\n";
   for (const auto& r : rows_) {
     text += fmt::format("{:.9g}", r.time);
     for (const double energy :

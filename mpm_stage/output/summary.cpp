@@ -38,10 +38,12 @@ Json features(const Scene& scene) {
   const SolverOptions& o = scene.solver;
   chosen.push_back(fmt::format("{}-D kernels", scene.dimension));
   chosen.push_back(shape_name(o.shape) + " shape functions");
-  chosen.push_back(o.transfer == TransferName::apic    ? "APIC transfer"
-                   : o.transfer == TransferName::aflip ? fmt::format("AFLIP transfer, damping {}", o.transfer_damping)
-                   : o.transfer == TransferName::flip  ? fmt::format("FLIP/PIC transfer, FLIP share {}", o.flip_share)
-                                                       : fmt::format("FMPM transfer, order {}", o.fmpm_order));
+  chosen.push_back(o.transfer == TransferName::apic ? "APIC transfer"
+                   : o.transfer == TransferName::aflip
+                       ? fmt::format("AFLIP transfer, damping {}, of phi = 0 soil and fluids {}", o.transfer_damping,
+                                     o.flow_transfer_damping)
+                   : o.transfer == TransferName::flip ? fmt::format("FLIP/PIC transfer, FLIP share {}", o.flip_share)
+                                                      : fmt::format("FMPM transfer, order {}", o.fmpm_order));
   bool pore = false, undrained = false, softening = false, rate = false, cutoff = false, average = false,
        limits = false;
   for (const auto& m : scene.materials) {

@@ -66,8 +66,8 @@ void read_scheme(const CaseNode& root, Scene& scene) {
   if (o.transfer == TransferName::aflip) {
     const double flow_share = o.flow_transfer_damping / o.transfer_damping;
     o.transfer_damping = scheme.number_or("transfer_damping", "1", Range::between(0.0, 10.0), o.transfer_damping);
-    o.flow_transfer_damping = scheme.number_or("flow_transfer_damping", "1", Range::between(0.0, 10.0),
-                                               flow_share * o.transfer_damping);
+    o.flow_transfer_damping =
+        scheme.number_or("flow_transfer_damping", "1", Range::between(0.0, 10.0), flow_share * o.transfer_damping);
   }
   if (o.transfer == TransferName::flip)
     o.flip_share = scheme.number_or("flip_share", "1", Range::between(0.0, 1.0), 0.99);

@@ -191,7 +191,8 @@ StressWork ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses_of(std::
       } else {
         own_volumetric(P_, begin, end, trace);
       }
-      if (inverts(trace, end - begin)) work.dissipated += relieve_lone(k, begin, end, corner(b), fit, trace, work.relieved);
+      if (inverts(trace, end - begin))
+        work.dissipated += relieve_lone(k, begin, end, corner(b), fit, trace, work.relieved);
       const StressWork done = update_stress(k, P_, begin, end, trace, dt);
       work.dissipated += done.dissipated;
       work.pore_pressure += done.pore_pressure;

@@ -39,8 +39,9 @@ struct SolverOptions {
   double flow_transfer_damping = 0.05;
   int fmpm_order = 4;  // terms of the full mass matrix's inverse (mass_filter.hpp); 1 is PIC
   bool volumetric_average = true;
-  double crowding_relief = 1.0;  // 1, share of a patch's crowding that goes with a unit of shear strain (patch_filling.hpp)
-  double courant = 0.5;              // 1, dt = courant h / max(c + |v|)
+  double crowding_relief =
+      1.0;               // 1, share of a patch's crowding that goes with a unit of shear strain (patch_filling.hpp)
+  double courant = 0.5;  // 1, dt = courant h / max(c + |v|)
   double maximum_step = 1e30;        // s
   bool soil_limits_friction = true;  // ground takes no more shear than phi = 0 soil carries (soil_limit.hpp)
   double contact_reach = 0.5;        // cells: nodes up to this distance above the ground belong to it
@@ -56,8 +57,8 @@ struct SolverOptions {
 };
 
 // Work done since the start, J (per metre in plane strain), each counted as energy taken from the particles except
-// `external`, `pore_pressure` (frozen pore water pushing expanding soil) and `crowding` (crowded soil pushed apart), which
-// were given to them.
+// `external`, `pore_pressure` (frozen pore water pushing expanding soil) and `crowding` (crowded soil pushed apart),
+// which were given to them.
 //
 // `transfer` is the kinetic energy lost between particles and nodes, both ways: sum m v^2 / 2 of the particles before
 // P2G minus that of the nodes, plus that of the nodes at the end of the step minus that of the particles after G2P.

@@ -51,7 +51,8 @@ class PatchFilling {
     beside_.resize(grid.active());
     room_.resize(grid.active() * patches);
     for (std::size_t a = 0; a < grid.active(); ++a) {
-      for (int k = 0; k < Block<Dim>::neighbours; ++k) beside_[a][static_cast<std::size_t>(k)] = grid.active_beside(a, k);
+      for (int k = 0; k < Block<Dim>::neighbours; ++k)
+        beside_[a][static_cast<std::size_t>(k)] = grid.active_beside(a, k);
       for (int k = 0; k < patches; ++k) {
         const double share = share_above(a, centre(k));
         room_[number(a, k)] = share < least_room ? 0.0 : share * cell_;

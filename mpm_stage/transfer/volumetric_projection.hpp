@@ -211,16 +211,16 @@ template <int Dim, class G>
 }
 
 struct GatheredIncrements {
-  double given = 0.0;   // J (per metre in plane strain), elastic energy that crowded particles got
+  double given = 0.0;       // J (per metre in plane strain), elastic energy that crowded particles got
   bool some_alone = false;  // whether some of the particles fly alone
 };
 
 // `fit` is the tile of the patches' functions. increment[0 .. end - begin) is the volumetric increment e' for the
 // stress update; where patches are crowded, less `relief` of that per unit of shear strain.
 template <int Dim, class Shape>
-GatheredIncrements gather_volumetric(const MaterialConstants& material, const Particles<Dim>& P, std::size_t begin, std::size_t end,
-                         const std::array<double, Dim>& corner, double h1, const PatchFit* fit, double relief,
-                                     double* increment) {
+GatheredIncrements gather_volumetric(const MaterialConstants& material, const Particles<Dim>& P, std::size_t begin,
+                                     std::size_t end, const std::array<double, Dim>& corner, double h1,
+                                     const PatchFit* fit, double relief, double* increment) {
   constexpr int T = Tile<Dim, Shape>::side;
   constexpr double most = 0.01;  // of volumetric strain in a step
   const VolumetricLaw<Dim> law(material);
@@ -262,7 +262,8 @@ bool is_alone(const Particles<Dim>& P, std::size_t p, const std::array<double, D
               const PatchFit* fit) {
   constexpr int T = Tile<Dim, Shape>::side;
   int first = 0;
-  for (int d = Dim - 1; d >= 0; --d) first = first * T + 2 * static_cast<int>((P.position[d][p] - corner[d]) * h1 * 0.5);
+  for (int d = Dim - 1; d >= 0; --d)
+    first = first * T + 2 * static_cast<int>((P.position[d][p] - corner[d]) * h1 * 0.5);
   return fit[first + patch_offset<T>(1)][2] != 0.0;
 }
 
