@@ -51,7 +51,6 @@ void for_each_number(SolverState<Dim>& s, RunState& r, Action action) {
   action("fastest_wave", s.fastest_wave);
   action("kinetic", s.kinetic);
   integer("sorts", s.sorts);
-  integer("relieved", s.relieved);
   action("work_plastic", s.work.plastic);
   action("work_friction", s.work.friction);
   action("work_contact", s.work.contact);
@@ -285,7 +284,7 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
     value = word == "work_transfer" || word == "work_impact" ? file.number_attribute_or_gap("/numbers", name)
                                                              : file.number_attribute("/numbers", name);
   });
-  for (const char* name : {"sorts", "relieved", "steps", "series_count", "frame_count"})
+  for (const char* name : {"sorts", "steps", "series_count", "frame_count"})
     whole_attribute(file, "/numbers", name);
 
   // The solver's own particles say which columns there are and how many materials.

@@ -14,7 +14,6 @@ struct StressWork {
   double dissipated = 0.0;     // in plastic and viscous flow
   double pore_pressure = 0.0;  // done by frozen pore pressure on the soil's expansion
   double crowding = 0.0;       // given as elastic energy to crowded soil (transfer/patch_filling.hpp)
-  long relieved = 0;           // particles that flew alone and lost their stress
 };
 
 // Particles begin .. end of `P`, whose `gradient` holds the step's midpoint gradient. `trace` has one volumetric strain

@@ -214,7 +214,6 @@ Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& reco
   j["share_asleep"] = record.particle_steps > 0.0 ? record.asleep_particle_steps / record.particle_steps : 0.0;
   j["particle_steps_per_second"] = compute > 0.0 ? record.particle_steps / compute : 0.0;
   j["sorts"] = solver.sorts();
-  j["lone_particles_relieved"] = solver.relieved();
   j["occupied_blocks"] = solver.grid().occupied();
   j["grid_bytes_per_particle"] =
       static_cast<double>(solver.grid_bytes()) / static_cast<double>(solver.particles().count());

@@ -100,6 +100,19 @@ void read_sleep(const CaseNode& root, Scene& scene) {
     root.fail("sleep", "needs scheme/transfer 'aflip' or 'flip': APIC puts momentum and forces on the nodes as one");
 }
 
+// A particle that no other shares its nodes with, as it flies or in a velocity field of few particles, breathes on them
+// at up to root(sum (w')^2 / w) c / h, with quadratic B-splines root(12): longer steps than 2 / root(12) h / c let that
+// grow.
+void warn_of_long_steps(const Scene& scene) {
+  constexpr double longest = 0.577;
+  const SolverOptions& o = scene.solver;
+  if (o.shape != ShapeName::quadratic || o.fields.count < 2 || o.courant <= longest) return;
+  add_warning(fmt::format(
+      "time/courant is {}: steps longer than {} let single particles between other soil swing ever more, until "
+      "they tear the run apart",
+      o.courant, longest));
+}
+
 void read_time(const CaseNode& root, Scene& scene) {
   const CaseNode time = root.object("time");
   scene.end_time = time.number("end", "s", Range::positive());
@@ -348,6 +361,7 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
   judge(root, scene);
   read_base_motion(root, scene);
   read_output(root, scene);
+  warn_of_long_steps(scene);
   return scene;
 }
 

@@ -147,7 +147,6 @@ class ExplicitSolver final : public Solver<Dim> {
     return identities;
   }
   long sorts() const override { return sorts_; }
-  long relieved() const override { return relieved_; }
 
   double elastic_energy() const override {
     double energy = 0.0;
@@ -230,7 +229,7 @@ class ExplicitSolver final : public Solver<Dim> {
   }
   double flip_share(double dt, const MaterialConstants& k) const {
     if (Transfer != TransferName::aflip) return options_.flip_share;
-    const double damping = k.phi_zero || k.flows ? options_.flow_transfer_damping : options_.transfer_damping;
+    const double damping = k.flows ? options_.flow_transfer_damping : options_.transfer_damping;
     return 1.0 - std::min(1.0, damping * dt * h1_ * fastest_wave_);
   }
   // Field f's node 0 of active block a in arrays by nodes, and its tiles.
@@ -323,10 +322,6 @@ class ExplicitSolver final : public Solver<Dim> {
   void average(bool sorted);
   void update_stresses(double dt);
   StressWork update_stresses_of(std::size_t b, double dt);
-  double relax_lone(const MaterialConstants& k, std::size_t begin, std::size_t end,
-                    const std::array<double, Dim>& corner, const PatchFit* fit, double dt);
-  double relieve_lone(const MaterialConstants& k, std::size_t begin, std::size_t end,
-                      const std::array<double, Dim>& corner, const PatchFit* fit, double* trace, long& relieved);
   void particles_to_grid();
   void scatter_block(std::size_t b);
   void scatter_ground_gaps(std::size_t b);
@@ -407,7 +402,7 @@ class ExplicitSolver final : public Solver<Dim> {
   std::array<double, Dim> impulse_{};
   std::vector<std::int32_t> removed_;
   std::vector<std::uint8_t> held_;  // by identity; empty unless the domain's sides hold particles
-  long sorts_ = 0, relieved_ = 0;
+  long sorts_ = 0;
 };
 
 }  // namespace tailrun::mpm

@@ -162,7 +162,6 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses(double dt) {
     work_.plastic += stress_work_[b].dissipated;
     work_.pore_pressure += stress_work_[b].pore_pressure;
     work_.crowding += stress_work_[b].crowding;
-    relieved_ += stress_work_[b].relieved;
   }
   if (water_.any()) book_water();
   add_time(seconds_.stress_and_scatter, since);
@@ -182,64 +181,19 @@ StressWork ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses_of(std::
     }
     for (std::size_t begin = run.begin; begin < run.end; begin += few_particles) {
       const std::size_t end = std::min(run.end, begin + few_particles);
-      bool some_alone = false;
       if (k.averaged) {
-        const GatheredIncrements gathered =
+        work.crowding +=
             gather_volumetric<Dim, Shape>(k, P_, begin, end, corner(b), h1_, fit, filling_.relief(), trace);
-        work.crowding += gathered.given;
-        some_alone = gathered.some_alone;
       } else {
         own_volumetric(P_, begin, end, trace);
       }
-      if (inverts(trace, end - begin))
-        work.dissipated += relieve_lone(k, begin, end, corner(b), fit, trace, work.relieved);
+      if (inverts(trace, end - begin)) return {std::nan(""), 0.0, 0.0};
       const StressWork done = update_stress(k, P_, begin, end, trace, dt);
       work.dissipated += done.dissipated;
       work.pore_pressure += done.pore_pressure;
-      if (some_alone) work.dissipated += relax_lone(k, begin, end, corner(b), fit, dt);
     }
   }
   return work;
-}
-
-// A particle that flies alone has no neighbours to press on: what it takes for strain is its own breathing on the few
-// nodes around it, faster (up to 3.5 c / h) than the time step need follow elsewhere, so that it would grow. Its stress
-// goes in the time that a wave takes through a cell. Returns the elastic energy that goes with it, J.
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-double ExplicitSolver<Dim, Shape, Split, Transfer>::relax_lone(const MaterialConstants& k, std::size_t begin,
-                                                               std::size_t end, const std::array<double, Dim>& corner,
-                                                               const PatchFit* fit, double dt) {
-  const double kept = std::exp(-2.0 * dt * h1_ * fastest_wave_);
-  double lost = 0.0;
-  for (std::size_t p = begin; p < end; ++p) {
-    if (!is_alone<Dim, Shape>(P_, p, corner, h1_, fit)) continue;
-    const double before = mpm::elastic_energy(k, P_, p, p + 1);
-    for (auto& column : P_.stress) column[p] *= kept;
-    lost += before - mpm::elastic_energy(k, P_, p, p + 1);
-  }
-  return lost;
-}
-
-// Particles with volumetric increments beyond all measure: those that fly alone (relax_lone) lose stress and affine
-// velocity and fly on as lumps. Returns the elastic energy that goes with them, J; not a number if one is among others.
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-double ExplicitSolver<Dim, Shape, Split, Transfer>::relieve_lone(const MaterialConstants& k, std::size_t begin,
-                                                                 std::size_t end, const std::array<double, Dim>& corner,
-                                                                 const PatchFit* fit, double* trace, long& relieved) {
-  double lost = 0.0;
-  for (std::size_t p = begin; p < end; ++p) {
-    if (std::fabs(trace[p - begin]) < 1.0) continue;
-    if (!std::isfinite(trace[p - begin]) || !k.averaged || !is_alone<Dim, Shape>(P_, p, corner, h1_, fit))
-      return std::nan("");
-    lost += mpm::elastic_energy(k, P_, p, p + 1);
-    trace[p - begin] = 0.0;
-    for (auto* columns : {&P_.affine, &P_.gradient})
-      for (auto& column : *columns)
-        if (!column.empty()) column[p] = 0.0;
-    for (auto& column : P_.stress) column[p] = 0.0;
-    ++relieved;
-  }
-  return lost;
 }
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>

@@ -249,7 +249,6 @@ SolverState<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::state() const {
   s.fastest_wave = fastest_wave_;
   s.kinetic = kinetic_;
   s.sorts = sorts_;
-  s.relieved = relieved_;
   s.work = work_;
   s.seconds = seconds_;
   s.impulse = impulse_;
@@ -279,7 +278,6 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::resume(Particles<Dim> particle
   fastest_wave_ = s.fastest_wave;
   kinetic_ = s.kinetic;
   sorts_ = s.sorts;
-  relieved_ = s.relieved;
   work_ = s.work;
   seconds_ = s.seconds;
   impulse_ = s.impulse;

@@ -104,7 +104,7 @@ struct SolverState {
   double drift = 0.0;                         // cells, since the last sort
   double fastest_wave = 0.0;                  // m/s
   double kinetic = 0.0;                       // J
-  long sorts = 0, relieved = 0;
+  long sorts = 0;
   WorkDone work;
   PhaseSeconds seconds;
   std::array<double, Dim> impulse{};  // N s
@@ -151,7 +151,6 @@ class Solver {
   virtual std::vector<std::int32_t> removed() const = 0;  // identities of particles that left
   virtual std::vector<std::int32_t> held() const = 0;     // identities of particles held at a side of the domain
   virtual long sorts() const = 0;
-  virtual long relieved() const = 0;  // times that a particle which flew alone lost its stress
 };
 
 // The particles are moved into the solver. `materials` are in the order of the particles' material numbers; `origin` is

@@ -1,22 +1,18 @@
-// How full the patches of volumetric_projection.hpp are, and what follows where that is too much or next to nothing.
-//
-// Crowding. A particle's volume follows its volumetric increments, its place the grid's velocities; what the grid does
-// not resolve lets places and volumes part, particle by particle, until flowing soil fills less room than the volumes
-// that it reckons with (a sheared slab of clay up to 19 % less beside the ground, which thins it and slows it down).
-// At the centre of each patch stands what its particles fill, as the nodes have it: mass over the patch's density, by
-// the room that the shape function has there above the ground. What it is above 1 is the patch's crowding: by so much
-// the particles are smaller than their volumes. So they give up, per unit of their own shear strain, a share of it as
-// volumetric strain like any other: volumes and stresses follow the material's law, and the pressure that comes of it
-// drives the soil apart. Crowding is made by strain, so it goes by strain, in the same proportion for any cell, step
-// and speed; soil at rest is left alone. The work of it (J, given to the particles as elastic energy) is counted
-// apart: it is what soil set free as it sank into itself.
+// How full the patches of volumetric_projection.hpp are: the cure of lost volume. A particle's volume follows its
+// volumetric increments, its place the grid's velocities; what the grid does not resolve lets places and volumes part,
+// particle by particle, until flowing soil fills less room than the volumes that it reckons with (a sheared slab of
+// clay up to 19 % less beside the ground, which thins it and slows it down). At the centre of each patch stands what
+// its particles fill, as the nodes have it: mass over the patch's density, by the room that the shape function has
+// there above the ground. What it is above 1 is the patch's crowding: by so much the particles are smaller than their
+// volumes. So they give up, per unit of their own shear strain, a share of it as volumetric strain like any other:
+// volumes and stresses follow the material's law, and the pressure that comes of it drives the soil apart. Crowding is
+// made by strain, so it goes by strain, in the same proportion for any cell, step and speed; soil at rest is left
+// alone. The work of it (J, given to the particles as elastic energy) is counted apart: it is what soil set free as it
+// sank into itself.
 //
 // Where all patches around are full too, crowding under 1 counts as well: single patches are up and down with the
 // particles that come and go, and to take one half of that alone would swell the soil. Beside a free surface only
 // what is above `noise` counts: there nothing tells room that is empty from soil that is loose.
-//
-// Lone particles. A patch with next to nothing in it, and around it no patch that is half full, has particles that fly
-// alone; see ExplicitSolver::relax_lone.
 #pragma once
 
 #include <algorithm>
@@ -40,7 +36,7 @@ class PatchFilling {
 
   double relief() const { return relief_; }
   std::size_t bytes() const {
-    return beside_.capacity() * sizeof(beside_[0]) + 4 * room_.capacity() * sizeof(double) + weighed_.capacity();
+    return beside_.capacity() * sizeof(beside_[0]) + 3 * room_.capacity() * sizeof(double) + weighed_.capacity();
   }
 
   // After each sort. share_above(a, n) is the share of the shape function of node n of active block a that lies above
@@ -60,7 +56,6 @@ class PatchFilling {
     }
     mass_.assign(room_.size(), 0.0);
     filling_.assign(room_.size(), unknown);
-    volume_.assign(room_.size(), 0.0);
     weighed_.assign(grid.active(), Weighed::never);
   }
 
@@ -81,13 +76,12 @@ class PatchFilling {
       const PatchSum* s = sum + first(k);
       const double volume = s[patch_offset<B>(1)][3], mass = s[patch_offset<B>(2)][3];
       const std::size_t at = number(a, k);
-      volume_[at] = volume / (cell_ * power(2, Dim));
       filling_[at] = room_[at] > 0.0 && mass > 0.0 && weighed_[a] != Weighed::never
                          ? mass_[at] * volume / (mass * room_[at])
                          : unknown;
     }
   }
-  // When all are compared: crowding, and whether particles fly alone, of the patches of active block a.
+  // When all are compared: the crowding of the patches of active block a.
   void judge(std::size_t a, PatchFit* fit) const {
     for (int k = 0; k < patches; ++k) {
       const std::size_t at = number(a, k);
@@ -96,8 +90,6 @@ class PatchFilling {
         out[1] = all_around(a, k, [this](std::ptrdiff_t other) { return other >= 0 && !is_open(other); })
                      ? filling_[at] - 1.0
                      : std::max(0.0, filling_[at] - 1.0 - noise);
-      if (volume_[at] > 0.0 && volume_[at] < lone)
-        out[2] = all_around(a, k, [this](std::ptrdiff_t other) { return other < 0 || volume_[other] < 0.5; });
     }
   }
 
@@ -107,7 +99,6 @@ class PatchFilling {
   static constexpr double full = 0.9;         // of a patch whose neighbour is not at a free surface
   static constexpr double noise = 0.02;       // of what a patch is filled
   static constexpr double least_room = 0.25;  // share of a shape function; under it the nodes' sums say little
-  static constexpr double lone = 0.2;         // of a patch; a layer of one row of particles has a quarter
   static constexpr double unknown = -1.0;
 
   static std::size_t number(std::size_t a, int k) { return a * patches + static_cast<std::size_t>(k); }
@@ -136,9 +127,8 @@ class PatchFilling {
 
   double relief_, cell_ = 0.0;                                   // 1; m3 (m2 in plane strain)
   std::vector<std::array<int, Block<Dim>::neighbours>> beside_;  // active blocks around active blocks
-  // Of each active block's patches: m3 (m2) of the shape function above the ground; kg at the centre; 1, of that room;
-  // 1, the particles' volume over the patch's.
-  std::vector<double> room_, mass_, filling_, volume_;
+  // Of each active block's patches: m3 (m2) of the shape function above the ground; kg at the centre; 1, of that room.
+  std::vector<double> room_, mass_, filling_;
   std::vector<Weighed> weighed_;  // by active block
 };
 

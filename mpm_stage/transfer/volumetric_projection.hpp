@@ -37,8 +37,8 @@ namespace tailrun::mpm {
 // and the mass of number 2; number 4, in 3-D, is a (X_1 X_2, X_2 X_0, 0, 0).
 using PatchSum = Vec4;
 // A patch's linear function: number 0 is the value at its centre and the slopes per cell, Pa; number 1 is the share of
-// the way to it that the particles go, the patch's crowding, and 1 where
-// particles fly alone (both: patch_filling.hpp).
+// the way to it that the particles go, the patch's crowding
+// (patch_filling.hpp).
 using PatchFit = Vec4;
 
 // What the elastic law has for changes of volume.
@@ -210,22 +210,17 @@ template <int Dim, class G>
   return root(squared);
 }
 
-struct GatheredIncrements {
-  double given = 0.0;       // J (per metre in plane strain), elastic energy that crowded particles got
-  bool some_alone = false;  // whether some of the particles fly alone
-};
-
 // `fit` is the tile of the patches' functions. increment[0 .. end - begin) is the volumetric increment e' for the
-// stress update; where patches are crowded, less `relief` of that per unit of shear strain.
+// stress update; where patches are crowded, less `relief` of that per unit of shear strain. Returns the elastic energy
+// (J, per metre in plane strain) that the particles get by that.
 template <int Dim, class Shape>
-GatheredIncrements gather_volumetric(const MaterialConstants& material, const Particles<Dim>& P, std::size_t begin,
-                                     std::size_t end, const std::array<double, Dim>& corner, double h1,
-                                     const PatchFit* fit, double relief, double* increment) {
+double gather_volumetric(const MaterialConstants& material, const Particles<Dim>& P, std::size_t begin, std::size_t end,
+                         const std::array<double, Dim>& corner, double h1, const PatchFit* fit, double relief,
+                         double* increment) {
   constexpr int T = Tile<Dim, Shape>::side;
   constexpr double most = 0.01;  // of volumetric strain in a step
   const VolumetricLaw<Dim> law(material);
   Vec4 given = {};
-  Vec4 alone = {};
   for_each_group(
       begin, end, [&](const auto& g) __attribute__((always_inline)) {
         const InPatch<Dim, Shape> in(P, g, corner, h1);
@@ -251,20 +246,8 @@ GatheredIncrements gather_volumetric(const MaterialConstants& material, const Pa
           e -= d;
         }
         of_run.write(increment, e);
-        alone += Vec4{second[in.first[0]][2], second[in.first[1]][2], second[in.first[2]][2], second[in.first[3]][2]};
       });
-  return {sum_of_lanes(given), sum_of_lanes(alone) > 0.0};
-}
-
-// Whether particle p flies alone.
-template <int Dim, class Shape>
-bool is_alone(const Particles<Dim>& P, std::size_t p, const std::array<double, Dim>& corner, double h1,
-              const PatchFit* fit) {
-  constexpr int T = Tile<Dim, Shape>::side;
-  int first = 0;
-  for (int d = Dim - 1; d >= 0; --d)
-    first = first * T + 2 * static_cast<int>((P.position[d][p] - corner[d]) * h1 * 0.5);
-  return fit[first + patch_offset<T>(1)][2] != 0.0;
+  return sum_of_lanes(given);
 }
 
 // Where nothing is projected: the particles' own increments.

@@ -28,7 +28,7 @@ Particles<2> square(const std::function<Point(Point)>& moved) {
   return P;
 }
 
-// What is found in the patch around a point: crowding, and 1 where particles fly alone.
+// What is found in the patch around a point.
 struct Found {
   Found(Particles<2> particles, double relief) : P(std::move(particles)), filling(relief) {
     grid.sort(P);
@@ -93,18 +93,6 @@ TEST_CASE("particles farther apart than their volumes count where all around is 
   Found found(square([](Point x) { return Point{1.05 * x[0], x[1]}; }), 1.0);
   CHECK(found.at(5.5, 6.5)[1] == doctest::Approx(-1.0 + 1.0 / 1.05).epsilon(0.2));
   CHECK(found.at(5.5, 11.5)[1] == 0.0);
-}
-
-TEST_CASE("a particle flies alone away from the others, and not in a corner of the soil or close to it") {
-  const auto found = [](Point last) {
-    auto P = square([](Point x) { return Point{x[0] + 0.8, x[1] + 0.8}; });
-    P.position[0].back() = last[0];
-    P.position[1].back() = last[1];
-    return Found(std::move(P), 1.0);
-  };
-  CHECK(found({15.2, 15.2}).at(15.2, 15.2)[2] == 1.0);
-  CHECK(found({13.2, 6.0}).at(13.2, 6.0)[2] == 0.0);
-  CHECK(found({6.0, 6.0}).at(0.9, 0.9)[2] == 0.0);
 }
 
 }  // namespace
