@@ -100,6 +100,7 @@ def plot_energy(plt, ledger, start, output):
         "damping_J": "damping",
         "external_J": "external work",
         "pore_pressure_J": "work of frozen pore pressure",
+        "crowding_J": "work on crowded soil",
         "transfer_J": "lost between particles and grid",
         "impact_J": "lost in impacts",
     }

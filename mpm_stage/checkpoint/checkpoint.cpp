@@ -58,6 +58,7 @@ void for_each_number(SolverState<Dim>& s, RunState& r, Action action) {
   action("work_external", s.work.external);
   action("work_removed", s.work.removed);
   action("work_pore_pressure", s.work.pore_pressure);
+  action("work_crowding", s.work.crowding);
   action("work_transfer", s.work.transfer);
   action("work_impact", s.work.impact);
   action("seconds_grid", s.seconds.grid);
@@ -97,6 +98,7 @@ void for_each_value(LedgerRow& r, Action action) {
                     &r.work.external,
                     &r.work.removed,
                     &r.work.pore_pressure,
+                    &r.work.crowding,
                     &r.work.transfer,
                     &r.work.impact,
                     &r.lost,
@@ -282,7 +284,8 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
     value = word == "work_transfer" || word == "work_impact" ? file.number_attribute_or_gap("/numbers", name)
                                                              : file.number_attribute("/numbers", name);
   });
-  for (const char* name : {"sorts", "steps", "series_count", "frame_count"}) whole_attribute(file, "/numbers", name);
+  for (const char* name : {"sorts", "steps", "series_count", "frame_count"})
+    whole_attribute(file, "/numbers", name);
 
   // The solver's own particles say which columns there are and how many materials.
   Particles<Dim>& like = solver.particles();

@@ -15,7 +15,7 @@
 
 namespace tailrun::mpm {
 
-constexpr int checkpoint_format_version = 5;
+constexpr int checkpoint_format_version = 6;
 
 // What the run loop has to remember besides the solver.
 struct RunState {

@@ -158,8 +158,8 @@ void check_series(const Hdf5Reader& file, const RunState& run, const Scene& scen
     const LedgerRow& r = run.ledger[k];
     // With FMPM what transfers and impacts cost is not known, nor what follows from it.
     for (const double x : {r.kinetic, r.elastic, r.gravitational, r.work.plastic, r.work.friction, r.work.contact,
-                           r.work.damping, r.work.external, r.work.removed, r.work.pore_pressure, r.mass, r.momentum[0],
-                           r.momentum[1], r.momentum[2], r.angular_momentum})
+                           r.work.damping, r.work.external, r.work.removed, r.work.pore_pressure, r.work.crowding,
+                           r.mass, r.momentum[0], r.momentum[1], r.momentum[2], r.angular_momentum})
       if (!std::isfinite(x)) file.fail("/series/ledger", fmt::format("row {} has a value that is not finite", k));
   }
   const std::size_t points = std::max<std::size_t>(scene.output.points.size(), 1);

@@ -13,6 +13,7 @@ namespace tailrun::mpm {
 struct StressWork {
   double dissipated = 0.0;     // in plastic and viscous flow
   double pore_pressure = 0.0;  // done by frozen pore pressure on the soil's expansion
+  double crowding = 0.0;       // given as elastic energy to crowded soil (transfer/patch_filling.hpp)
 };
 
 // Particles begin .. end of `P`, whose `gradient` holds the step's midpoint gradient. `trace` has one volumetric strain

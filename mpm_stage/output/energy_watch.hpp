@@ -20,7 +20,7 @@ class EnergyWatch {
   // J, what motion holds and has done.
   static double spent(const StepReport& report, const WorkDone& w) {
     return report.kinetic_energy + w.plastic + w.friction + w.contact + w.damping + w.removed - w.external -
-           w.pore_pressure;
+           w.pore_pressure - w.crowding;
   }
 
   // After `row`, measured after the step `report`: `weight` is |g| sqrt(M), `growth` what energy may grow by, J.

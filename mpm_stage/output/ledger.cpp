@@ -38,7 +38,7 @@ double Ledger<Dim>::turnover(const LedgerRow& now, double largest_kinetic) const
   const LedgerRow& first = rows_.empty() ? now : rows_.front();
   return std::max({std::fabs(first.gravitational - now.gravitational), first.kinetic + first.elastic, largest_kinetic,
                    losses(now.work)}) +
-         std::fabs(now.work.external) + std::fabs(now.work.pore_pressure);
+         std::fabs(now.work.external) + std::fabs(now.work.pore_pressure) + std::fabs(now.work.crowding);
 }
 
 template <int Dim>
@@ -62,7 +62,8 @@ LedgerRow Ledger<Dim>::measure(double time, Solver<Dim>& solver) const {
   row.work = solver.work();
   if (rows_.empty()) return row;
   const LedgerRow& first = rows_.front();
-  row.lost = first.total() + row.work.external + row.work.pore_pressure - losses(row.work) - row.total();
+  row.lost =
+      first.total() + row.work.external + row.work.pore_pressure + row.work.crowding - losses(row.work) - row.total();
   // A particle that left took its height's energy along, so mass that went is no longer comparable.
   if (row.mass < first.mass * (1.0 - 1e-12)) row.lost = std::nan("");
   row.residual = row.lost - (std::isnan(row.work.transfer) ? 0.0 : row.work.transfer + row.work.impact);
@@ -98,13 +99,13 @@ template <int Dim>
 void Ledger<Dim>::write(const std::filesystem::path& path) const {
   std::string text =
       "time_s,kinetic_J,elastic_J,gravitational_J,plastic_J,friction_J,contact_J,damping_J,external_J,pore_pressure_J,"
-      "transfer_J,"
-      "impact_J,residual_J,mass_kg,momentum_x_Ns,momentum_y_Ns,momentum_z_Ns,angular_momentum_Nms\n";
+      "crowding_J,transfer_J,impact_J,residual_J,mass_kg,momentum_x_Ns,momentum_y_Ns,momentum_z_Ns,angular_momentum_"
+      "Nms\n";
   for (const auto& r : rows_) {
     text += fmt::format("{:.9g}", r.time);
     for (const double energy :
          {r.kinetic, r.elastic, r.gravitational, r.work.plastic, r.work.friction, r.work.contact, r.work.damping,
-          r.work.external, r.work.pore_pressure, r.work.transfer, r.work.impact, r.residual})
+          r.work.external, r.work.pore_pressure, r.work.crowding, r.work.transfer, r.work.impact, r.residual})
       text += csv_cell(energy, 10);
     for (const double kept : {r.mass, r.momentum[0], r.momentum[1], r.momentum[2], r.angular_momentum})
       text += csv_cell(kept, 15);

@@ -38,10 +38,12 @@ Json features(const Scene& scene) {
   const SolverOptions& o = scene.solver;
   chosen.push_back(fmt::format("{}-D kernels", scene.dimension));
   chosen.push_back(shape_name(o.shape) + " shape functions");
-  chosen.push_back(o.transfer == TransferName::apic    ? "APIC transfer"
-                   : o.transfer == TransferName::aflip ? fmt::format("AFLIP transfer, damping {}", o.transfer_damping)
-                   : o.transfer == TransferName::flip  ? fmt::format("FLIP/PIC transfer, FLIP share {}", o.flip_share)
-                                                       : fmt::format("FMPM transfer, order {}", o.fmpm_order));
+  chosen.push_back(o.transfer == TransferName::apic ? "APIC transfer"
+                   : o.transfer == TransferName::aflip
+                       ? fmt::format("AFLIP transfer, damping {}, of phi = 0 soil and fluids {}", o.transfer_damping,
+                                     o.flow_transfer_damping)
+                   : o.transfer == TransferName::flip ? fmt::format("FLIP/PIC transfer, FLIP share {}", o.flip_share)
+                                                      : fmt::format("FMPM transfer, order {}", o.fmpm_order));
   bool pore = false, undrained = false, softening = false, rate = false, cutoff = false, average = false,
        limits = false;
   for (const auto& m : scene.materials) {
@@ -190,6 +192,7 @@ Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& reco
                  {"damping_J", last.work.damping},
                  {"external_J", last.work.external},
                  {"pore_pressure_J", last.work.pore_pressure},
+                 {"crowding_J", last.work.crowding},
                  {"removed_J", last.work.removed},
                  {"transfer_J", last.work.transfer},
                  {"impact_J", last.work.impact},

@@ -63,13 +63,19 @@ void read_scheme(const CaseNode& root, Scene& scene) {
                : transfer == "aflip" ? TransferName::aflip
                : transfer == "flip"  ? TransferName::flip
                                      : TransferName::fmpm;
-  if (o.transfer == TransferName::aflip)
+  if (o.transfer == TransferName::aflip) {
+    const double flow_share = o.flow_transfer_damping / o.transfer_damping;
     o.transfer_damping = scheme.number_or("transfer_damping", "1", Range::between(0.0, 10.0), o.transfer_damping);
+    o.flow_transfer_damping =
+        scheme.number_or("flow_transfer_damping", "1", Range::between(0.0, 10.0), flow_share * o.transfer_damping);
+  }
   if (o.transfer == TransferName::flip)
     o.flip_share = scheme.number_or("flip_share", "1", Range::between(0.0, 1.0), 0.99);
   if (o.transfer == TransferName::fmpm)
     o.fmpm_order = static_cast<int>(scheme.integer_or("fmpm_order", 2, 6, o.fmpm_order));
   o.volumetric_average = scheme.boolean_or("volumetric_average", true);
+  if (o.volumetric_average)
+    o.crowding_relief = scheme.number_or("crowding_relief", "1", Range::between(0.0, 10.0), o.crowding_relief);
   o.soil_limits_friction = scheme.boolean_or("soil_limits_friction", true);
   o.contact_reach = scheme.number_or("contact_reach", "cells", Range::between(0.0, 1.0), o.contact_reach);
   if (const auto share = scheme.number_if("surface_share", "1", Range::between(0.0, 0.2))) o.surface_share = *share;
@@ -92,6 +98,19 @@ void read_sleep(const CaseNode& root, Scene& scene) {
     root.fail("sleep", "does not go with scheme/transfer 'fmpm', whose filter needs every particle in every step");
   if (o.speed > 0.0 && scene.solver.transfer == TransferName::apic && scene.solver.local_damping == 0.0)
     root.fail("sleep", "needs scheme/transfer 'aflip' or 'flip': APIC puts momentum and forces on the nodes as one");
+}
+
+// A particle that no other shares its nodes with, as it flies or in a velocity field of few particles, breathes on them
+// at up to root(sum (w')^2 / w) c / h, with quadratic B-splines root(12): longer steps than 2 / root(12) h / c let that
+// grow.
+void warn_of_long_steps(const Scene& scene) {
+  constexpr double longest = 0.577;
+  const SolverOptions& o = scene.solver;
+  if (o.shape != ShapeName::quadratic || o.fields.count < 2 || o.courant <= longest) return;
+  add_warning(fmt::format(
+      "time/courant is {}: steps longer than {} let single particles between other soil swing ever more, until "
+      "they tear the run apart",
+      o.courant, longest));
 }
 
 void read_time(const CaseNode& root, Scene& scene) {
@@ -342,6 +361,7 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
   judge(root, scene);
   read_base_motion(root, scene);
   read_output(root, scene);
+  warn_of_long_steps(scene);
   return scene;
 }
 

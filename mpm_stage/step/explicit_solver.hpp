@@ -38,6 +38,7 @@
 #include "mpm_stage/transfer/interface_sums.hpp"
 #include "mpm_stage/transfer/mass_matrix.hpp"
 #include "mpm_stage/transfer/particles_to_grid.hpp"
+#include "mpm_stage/transfer/patch_filling.hpp"
 #include "mpm_stage/transfer/volumetric_projection.hpp"
 
 namespace tailrun::mpm {
@@ -61,7 +62,8 @@ class ExplicitSolver final : public Solver<Dim> {
         ground_(terrain, options.contact_reach * cell_size),
         extension_(options.surface_share),
         sleep_(options.sleep),
-        water_(options.ponds) {
+        water_(options.ponds),
+        filling_(options.crowding_relief) {
     double mass = 0.0;
     for (const double m : P_.mass) mass += m;
     mass_cutoff_ = (options.mass_cutoff < 0.0 ? Shape::mass_cutoff : options.mass_cutoff) * mass /
@@ -160,7 +162,7 @@ class ExplicitSolver final : public Solver<Dim> {
   std::size_t grid_bytes() const override {
     return grid_.bytes() + (tiles_.capacity() + velocity_.capacity() + change_.capacity()) * sizeof(Vec4) +
            beside_.capacity() * sizeof(SplitNode<Dim>) + (term_.capacity() + products_.capacity()) * sizeof(Vec4) +
-           averaged_tiles_.capacity() * sizeof(PatchSum) + averaged_.capacity() * sizeof(PatchFit);
+           averaged_tiles_.capacity() * sizeof(PatchSum) + averaged_.capacity() * sizeof(PatchFit) + filling_.bytes();
   }
 
  private:
@@ -225,9 +227,10 @@ class ExplicitSolver final : public Solver<Dim> {
     return std::min({options_.courant * h_ / fastest_wave_ / std::sqrt(raised), options_.maximum_step,
                      viscous_limit_ / raised, limit});
   }
-  double flip_share(double dt) const {
-    return Transfer == TransferName::aflip ? 1.0 - std::min(1.0, options_.transfer_damping * dt * h1_ * fastest_wave_)
-                                           : options_.flip_share;
+  double flip_share(double dt, const MaterialConstants& k) const {
+    if (Transfer != TransferName::aflip) return options_.flip_share;
+    const double damping = k.flows ? options_.flow_transfer_damping : options_.transfer_damping;
+    return 1.0 - std::min(1.0, damping * dt * h1_ * fastest_wave_);
   }
   // Field f's node 0 of active block a in arrays by nodes, and its tiles.
   std::size_t node_of(int f, std::size_t a) const { return fields_.number(f, a) * block_nodes; }
@@ -275,6 +278,7 @@ class ExplicitSolver final : public Solver<Dim> {
   void remember_grip(const GripMemory<Dim>& memory);
   bool in_reach_of_body(std::size_t a, int n) const;
   bool is_solid(std::size_t a, int n) const;
+  double share_above(std::size_t a, int n) const;
   bool still(std::size_t a) const;
   template <class Load>
   bool sleeps_on(std::size_t b, const Vec4* tile, Load load, double dt);
@@ -347,6 +351,7 @@ class ExplicitSolver final : public Solver<Dim> {
   SurfaceExtension<Dim> extension_;
   SleepingBlocks<Dim> sleep_;
   PondedWater<Dim> water_;
+  PatchFilling<Dim> filling_;
   double water_potential_ = 0.0;      // J, PondedWater::potential of all particles
   std::vector<double> water_levels_;  // m, for which that is
   bool averaging_ = false, leaving_ = false, starts_with_spin_ = false;

@@ -14,7 +14,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& 
   constexpr bool Flip = Transfer == TransferName::flip || Transfer == TransferName::aflip;
   constexpr bool Affine = Transfer == TransferName::apic || Transfer == TransferName::aflip;
   // Particles that start without affine velocities, whatever their velocities, take them from the grid as they are.
-  const GridToParticles s{dt, h1_, flip_share(dt), time_ > 0.0 || starts_with_spin_ ? flip_share(dt) : 0.0};
+  const bool take_affine = !(time_ > 0.0 || starts_with_spin_);
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t b = 0; b < grid_.occupied(); ++b) {
     Vec4 tile[tile_nodes], change[Flip && separate_change ? tile_nodes : 1];
@@ -40,6 +40,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& 
       if constexpr (Flip && separate_change)
         if (run.field != changed) load_tile<Dim, Shape>(grid_, b, change_.data() + node_of(run.field, 0), change);
       changed = run.field;
+      const double flip = flip_share(dt, constants_[run.material]);
+      const GridToParticles s{dt, h1_, flip, take_affine ? 0.0 : flip};
       const MotionExtremes e =
           mpm::grid_to_particles<Shape, Flip, Affine>(s, tile, change, corner(b), P_, run.begin, run.end);
       motion.far = std::max(motion.far, e.displacement);
@@ -130,7 +132,10 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::average(bool sorted) {
     PatchSum sum[block_nodes];
     gather_tiles<Dim, Shape>(grid_.tiles_around(a), averaged_tiles_.data(), sum);
     fit_patches<Dim>(sum, averaged_.data() + a * block_nodes);
+    filling_.compare(a, sum);
   }
+#pragma omp parallel for schedule(dynamic, 4)
+  for (std::size_t a = 0; a < grid_.active(); ++a) filling_.judge(a, averaged_.data() + a * block_nodes);
   add_time(seconds_.volumetric, since);
 }
 
@@ -156,6 +161,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses(double dt) {
            "is inverted: its volume changes beyond all measure in one step");
     work_.plastic += stress_work_[b].dissipated;
     work_.pore_pressure += stress_work_[b].pore_pressure;
+    work_.crowding += stress_work_[b].crowding;
   }
   if (water_.any()) book_water();
   add_time(seconds_.stress_and_scatter, since);
@@ -176,11 +182,12 @@ StressWork ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses_of(std::
     for (std::size_t begin = run.begin; begin < run.end; begin += few_particles) {
       const std::size_t end = std::min(run.end, begin + few_particles);
       if (k.averaged) {
-        gather_volumetric<Dim, Shape>(k, P_, begin, end, corner(b), h1_, fit, trace);
+        work.crowding +=
+            gather_volumetric<Dim, Shape>(k, P_, begin, end, corner(b), h1_, fit, filling_.relief(), trace);
       } else {
         own_volumetric(P_, begin, end, trace);
       }
-      if (inverts(trace, end - begin)) return {std::nan(""), 0.0};
+      if (inverts(trace, end - begin)) return {std::nan(""), 0.0, 0.0};
       const StressWork done = update_stress(k, P_, begin, end, trace, dt);
       work.dissipated += done.dissipated;
       work.pore_pressure += done.pore_pressure;

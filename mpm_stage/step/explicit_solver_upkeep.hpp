@@ -114,6 +114,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
   if (averaging_) {
     averaged_tiles_.resize(grid_.occupied() * tile_nodes);
     averaged_.resize(grid_.active() * block_nodes);
+    filling_.lay_out(grid_, [this](std::size_t a, int n) { return share_above(a, n); });
   }
   if (ground_.any()) {
     gap_tiles_.resize(tiles_.size());
@@ -199,6 +200,16 @@ bool ExplicitSolver<Dim, Shape, Split, Transfer>::is_solid(std::size_t a, int n)
       if (side.kind != WallKind::open && (s == 0 ? node[d] < side.node : node[d] > side.node)) return true;
     }
   return in_reach_of_body(a, n);
+}
+
+// Share of node n's shape function above the ground, as if that were plane there and the function a Gaussian of the
+// same width; none beyond a wall or in a body.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+double ExplicitSolver<Dim, Shape, Split, Transfer>::share_above(std::size_t a, int n) const {
+  const double variance = Shape::support / 12.0;  // cells squared, of a B-spline
+  const double above = ground_.of_block(a) ? ground_.distances(a)[n] * h1_ : 10.0;
+  if (above > 0.0 && is_solid(a, n)) return 0.0;
+  return 0.5 * (1.0 + std::erf(above / std::sqrt(2.0 * variance)));
 }
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>

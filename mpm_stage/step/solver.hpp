@@ -34,9 +34,14 @@ struct SolverOptions {
   // 1, share of APIC in the AFLIP blend over the time that the fastest wave takes through a cell: what the transfer
   // takes from motion under the grid's resolution then does not depend on the time step.
   double transfer_damping = 0.3;
+  // The same for phi = 0 soil and fluids. Where they flow, damping acts as a viscosity beside their own; and they need
+  // less of it, for what they dissipate themselves takes the noise along.
+  double flow_transfer_damping = 0.05;
   int fmpm_order = 4;  // terms of the full mass matrix's inverse (mass_filter.hpp); 1 is PIC
   bool volumetric_average = true;
-  double courant = 0.5;              // 1, dt = courant h / max(c + |v|)
+  double crowding_relief =
+      1.0;               // 1, share of a patch's crowding that goes with a unit of shear strain (patch_filling.hpp)
+  double courant = 0.5;  // 1, dt = courant h / max(c + |v|)
   double maximum_step = 1e30;        // s
   bool soil_limits_friction = true;  // ground takes no more shear than phi = 0 soil carries (soil_limit.hpp)
   double contact_reach = 0.5;        // cells: nodes up to this distance above the ground belong to it
@@ -52,7 +57,8 @@ struct SolverOptions {
 };
 
 // Work done since the start, J (per metre in plane strain), each counted as energy taken from the particles except
-// `external` and `pore_pressure` (frozen pore water pushing expanding soil), which were given to them.
+// `external`, `pore_pressure` (frozen pore water pushing expanding soil) and `crowding` (crowded soil pushed apart),
+// which were given to them.
 //
 // `transfer` is the kinetic energy lost between particles and nodes, both ways: sum m v^2 / 2 of the particles before
 // P2G minus that of the nodes, plus that of the nodes at the end of the step minus that of the particles after G2P.
@@ -62,7 +68,7 @@ struct SolverOptions {
 // `friction` is that of the ground and of walls, `contact` that between velocity fields.
 struct WorkDone {
   double plastic = 0.0, friction = 0.0, contact = 0.0, damping = 0.0, external = 0.0, removed = 0.0,
-         pore_pressure = 0.0;
+         pore_pressure = 0.0, crowding = 0.0;
   double transfer = 0.0, impact = 0.0;
 };
 

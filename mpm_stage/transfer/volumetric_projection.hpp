@@ -33,11 +33,12 @@
 namespace tailrun::mpm {
 
 // One of a patch's sums over its particles at X (cells, from the patch's centre), with weights a = V / K and q = p + K
-// e: number 0 is a (1, q, X_0 X_1, q^2), number 1 + d is a X_d (1, q, X_d, 0) but for the last number, V, of number 1;
-// number 4, in 3-D, is a (X_1 X_2, X_2 X_0, 0, 0).
+// e: number 0 is a (1, q, X_0 X_1, q^2), number 1 + d is a X_d (1, q, X_d, 0) but for the last numbers, V of number 1
+// and the mass of number 2; number 4, in 3-D, is a (X_1 X_2, X_2 X_0, 0, 0).
 using PatchSum = Vec4;
-// A patch's linear function: number 0 is the value at its centre and the slopes per cell, Pa; number 1 is first the
-// share of the way to it that the particles go.
+// A patch's linear function: number 0 is the value at its centre and the slopes per cell, Pa; number 1 is the share of
+// the way to it that the particles go, the patch's crowding
+// (patch_filling.hpp).
 using PatchFit = Vec4;
 
 // What the elastic law has for changes of volume.
@@ -123,6 +124,7 @@ void scatter_volumetric(const MaterialConstants& material, const Particles<Dim>&
           give[1 + d][2] = give[1 + d][0] * in.X[d];
         }
         give[1][3] = v;
+        give[2][3] = g.read(P.mass.data());
         if constexpr (Dim == 3) {
           give[4][0] = a * in.X[1] * in.X[2];
           give[4][1] = aX * in.X[2];
@@ -188,17 +190,37 @@ void fit_patches(const PatchSum* sum, PatchFit* fit) {
           out[1 + d] = slope[d];
         }
         const double allowed = most * s[patch_offset<B>(1)][3] * per_weight;
-        (&out)[patch_offset<B>(1)][0] = rest > allowed * allowed ? allowed / std::sqrt(rest) : 1.0;
+        (&out)[patch_offset<B>(1)] = Vec4{rest > allowed * allowed ? allowed / std::sqrt(rest) : 1.0, 0.0, 0.0, 0.0};
       }
 }
 
+// Shear strain (engineering) of the step, from the midpoint gradient.
+template <int Dim, class G>
+[[gnu::always_inline]] inline Vec4 shear_of(const Particles<Dim>& P, const G& g) {
+  Vec4 squared = {}, mean = {};
+  for (int d = 0; d < Dim; ++d) mean += g.read(P.gradient[d * (Dim + 1)].data()) * (1.0 / Dim);
+  for (int i = 0; i < Dim; ++i) {
+    const Vec4 own = g.read(P.gradient[i * (Dim + 1)].data()) - mean;
+    squared += 2.0 * own * own;
+    for (int j = 0; j < i; ++j) {
+      const Vec4 both = g.read(P.gradient[i * Dim + j].data()) + g.read(P.gradient[j * Dim + i].data());
+      squared += both * both;
+    }
+  }
+  return root(squared);
+}
+
 // `fit` is the tile of the patches' functions. increment[0 .. end - begin) is the volumetric increment e' for the
-// stress update.
+// stress update; where patches are crowded, less `relief` of that per unit of shear strain. Returns the elastic energy
+// (J, per metre in plane strain) that the particles get by that.
 template <int Dim, class Shape>
-void gather_volumetric(const MaterialConstants& material, const Particles<Dim>& P, std::size_t begin, std::size_t end,
-                       const std::array<double, Dim>& corner, double h1, const PatchFit* fit, double* increment) {
+double gather_volumetric(const MaterialConstants& material, const Particles<Dim>& P, std::size_t begin, std::size_t end,
+                         const std::array<double, Dim>& corner, double h1, const PatchFit* fit, double relief,
+                         double* increment) {
   constexpr int T = Tile<Dim, Shape>::side;
+  constexpr double most = 0.01;  // of volumetric strain in a step
   const VolumetricLaw<Dim> law(material);
+  Vec4 given = {};
   for_each_group(
       begin, end, [&](const auto& g) __attribute__((always_inline)) {
         const InPatch<Dim, Shape> in(P, g, corner, h1);
@@ -214,8 +236,18 @@ void gather_volumetric(const MaterialConstants& material, const Particles<Dim>& 
                             second[in.first[3]][0]};
         auto of_run = g;
         of_run.first -= begin;
-        of_run.write(increment, trace + share * ((fitted - law.stress(P, g)) * law.flexibility - trace));
+        const Vec4 p = law.stress(P, g);
+        Vec4 e = trace + share * ((fitted - p) * law.flexibility - trace);
+        if (relief > 0.0) {
+          const Vec4 crowding = {second[in.first[0]][1], second[in.first[1]][1], second[in.first[2]][1],
+                                 second[in.first[3]][1]};
+          const Vec4 d = smaller(larger(relief * crowding * shear_of<Dim>(P, g), splat(-most)), splat(most));
+          given += g.only(g.read(P.volume.data()) * d * (0.5 * law.modulus * d - p - law.modulus * e));
+          e -= d;
+        }
+        of_run.write(increment, e);
       });
+  return sum_of_lanes(given);
 }
 
 // Where nothing is projected: the particles' own increments.

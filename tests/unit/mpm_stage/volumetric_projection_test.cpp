@@ -61,8 +61,8 @@ std::vector<double> projected(const Particles<Dim>& P, const MaterialConstants& 
   fit_patches<Dim>(own.data(), fits.data());
   for (int n = 0; n < Block<Dim>::nodes; ++n) tile[place(n)] = fits[n];
   std::vector<double> increment(P.count());
-  gather_volumetric<Dim, Shape>(first, P, 0, soft, corner, 1.0 / h, tile.data(), increment.data());
-  gather_volumetric<Dim, Shape>(second, P, soft, P.count(), corner, 1.0 / h, tile.data(), increment.data() + soft);
+  gather_volumetric<Dim, Shape>(first, P, 0, soft, corner, 1.0 / h, tile.data(), 0.0, increment.data());
+  gather_volumetric<Dim, Shape>(second, P, soft, P.count(), corner, 1.0 / h, tile.data(), 0.0, increment.data() + soft);
   return increment;
 }
 

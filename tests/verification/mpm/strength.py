@@ -4,7 +4,7 @@ import math
 import numpy as np
 
 from elastic import point_checks
-from runner import G
+from runner import G, relative
 
 
 def mohr_coulomb_point(r):
@@ -109,6 +109,56 @@ def cohesive_block(r):
         noise[average] = mean_stress_noise(run.frame(), 0.5)
     rows.append(("checkerboard at rest, averaged over plain", noise[True], noise[False], noise[True] / noise[False], 0.1))
     rows.append(("RMS difference of neighbouring cells' mean stress over the mean", None, None, noise[True], 0.05))
+    return rows
+
+
+def bingham_start(thickness, angle, density, yield_stress, viscosity, shear_modulus, times, layers=120):
+    """Surface speed (m/s) of a Bingham slab without end that is let go, at `times` (s): layers that carry shear stress,
+    elastic up to the yield stress and viscous beyond, each step explicit in motion and implicit in flow."""
+    dy = thickness / layers
+    dt = 0.4 * dy * (density / shear_modulus) ** 0.5
+    depth = thickness - dy * np.arange(layers)  # of the layers' lower faces, the ground's first
+    stress = np.minimum(density * G * np.sin(angle) * depth, yield_stress)
+    speed, found, t = np.zeros(layers), [], 0.0
+    for end in times:
+        while t < end:
+            rate = np.diff(speed, prepend=0.0) / dy
+            stress += shear_modulus * dt * rate
+            over = np.maximum(np.abs(stress) - yield_stress, 0.0)
+            stress -= np.sign(stress) * shear_modulus * dt * over / (shear_modulus * dt + viscosity)
+            speed += dt * (G * np.sin(angle) + np.diff(stress, append=0.0) / dy / density)
+            t += dt
+        found.append(speed[-1])
+    return np.array(found)
+
+
+def bingham_slab(r):
+    rows = []
+    for degrees, cells in [(12, 9), (20, 9), (12, 6)]:
+        scene, angle = r.scene(), np.radians(degrees)
+        mud = scene["materials"]["mud"]
+        thickness = 1.5 * mud["cohesion"] / (mud["density"] * G * np.sin(angle))
+        scene["grid"]["cell_size"] = thickness / cells
+        box = scene["particles"][0]
+        box.update(high=[160 / 3 * thickness, thickness], rotation=-degrees)
+        box["stress"].update(angle=degrees, surface_point=[thickness * np.sin(angle), thickness * np.cos(angle)])
+        scene["terrain"][0]["points"] = [[-1e3 * np.cos(angle), 1e3 * np.sin(angle)], [1e3 * np.cos(angle), -1e3 * np.sin(angle)]]
+        run = r.run(scene, f"{degrees}_{cells}")
+        shear_modulus = mud["youngs_modulus"] / (2 + 2 * mud["poisson_ratio"])
+        wanted = bingham_start(thickness, angle, mud["density"], mud["cohesion"], mud["rate"]["consistency"], shear_modulus, [1, 2, 3, 4])
+        tops = []
+        for k in range(5):
+            frame = run.frame(k)
+            x, y, v = frame["x"][:, 0], frame["x"][:, 1], frame["velocity"]
+            along, height = x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle)
+            middle = (along > 18 * thickness) & (along < 31 * thickness)
+            tops.append(np.quantile(height[middle], 0.98))
+            if k == 0:
+                continue
+            top = middle & (height > 0.75 * tops[-1])
+            found = np.mean(v[top, 0] * np.cos(angle) - v[top, 1] * np.sin(angle))
+            rows.append((f"surface speed after {k} s, m/s, {degrees} deg, {cells} cells", found, wanted[k - 1], relative(found, wanted[k - 1]), 0.05))
+        rows.append((f"change of the thickness in 4 s, {degrees} deg, {cells} cells", None, None, abs(tops[-1] / tops[0] - 1), 0.03))
     return rows
 
 
