@@ -284,8 +284,7 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
     value = word == "work_transfer" || word == "work_impact" ? file.number_attribute_or_gap("/numbers", name)
                                                              : file.number_attribute("/numbers", name);
   });
-  for (const char* name : {"sorts", "steps", "series_count", "frame_count"})
-    whole_attribute(file, "/numbers", name);
+  for (const char* name : {"sorts", "steps", "series_count", "frame_count"}) whole_attribute(file, "/numbers", name);
 
   // The solver's own particles say which columns there are and how many materials.
   Particles<Dim>& like = solver.particles();
