@@ -97,6 +97,7 @@ def plot_energy(plt, ledger, start, output):
         "gravitational_J": "gravitational (change)",
         "plastic_J": "dissipated in the soil",
         "friction_J": "dissipated on the bed",
+        "contact_J": "dissipated between soils",
         "damping_J": "damping",
         "external_J": "external work",
         "pore_pressure_J": "work of frozen pore pressure",
