@@ -100,11 +100,13 @@ void read_sleep(const CaseNode& root, Scene& scene) {
     root.fail("sleep", "needs scheme/transfer 'aflip' or 'flip': APIC puts momentum and forces on the nodes as one");
 }
 
-// A particle that no other shares its nodes with, as it flies or in a velocity field of few particles, breathes on them
-// at up to root(sum (w')^2 / w) c / h, with quadratic B-splines root(12): longer steps than 2 / root(12) h / c let that
-// grow.
+// A particle that no other shares its nodes with, as it flies or in a velocity field of few particles, breathes on
+// them. Its strain follows the nodes' velocities after their own forces, so with S = sum (w')^2 / w (4 to 6 for
+// quadratic B-splines) and the modulus M of equal strain in the plane, up to 2 rho c^2, that grows from M dt^2 / (rho
+// h^2) = 2 / (S - 2) on: dt = 0.5 h / c at the worst place in a cell. (In space M is up to 3 rho c^2 and the worst step
+// 0.41 h / c.)
 void warn_of_long_steps(const Scene& scene) {
-  constexpr double longest = 0.577;
+  constexpr double longest = 0.5;
   const SolverOptions& o = scene.solver;
   if (o.shape != ShapeName::quadratic || o.fields.count < 2 || o.courant <= longest) return;
   add_warning(fmt::format(

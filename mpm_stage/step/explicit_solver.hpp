@@ -63,7 +63,7 @@ class ExplicitSolver final : public Solver<Dim> {
         extension_(options.surface_share),
         sleep_(options.sleep),
         water_(options.ponds),
-        filling_(options.crowding_relief) {
+        filling_(0.0) {
     double mass = 0.0;
     for (const double m : P_.mass) mass += m;
     mass_cutoff_ = (options.mass_cutoff < 0.0 ? Shape::mass_cutoff : options.mass_cutoff) * mass /
@@ -74,6 +74,7 @@ class ExplicitSolver final : public Solver<Dim> {
       constants_.back().averaged = constants_.back().averaged && options.volumetric_average;
       averaging_ = averaging_ || constants_.back().averaged;
     }
+    if (averaging_) filling_ = PatchFilling<Dim>(options.crowding_relief);
     limit_volumes();
     if (walls.bounded && walls.leaving == LeavingParticles::wall) {
       std::int32_t most = 0;

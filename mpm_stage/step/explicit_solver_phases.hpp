@@ -132,10 +132,12 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::average(bool sorted) {
     PatchSum sum[block_nodes];
     gather_tiles<Dim, Shape>(grid_.tiles_around(a), averaged_tiles_.data(), sum);
     fit_patches<Dim>(sum, averaged_.data() + a * block_nodes);
-    filling_.compare(a, sum);
+    if (filling_.active()) filling_.compare(a, sum);
   }
+  if (filling_.active()) {
 #pragma omp parallel for schedule(dynamic, 4)
-  for (std::size_t a = 0; a < grid_.active(); ++a) filling_.judge(a, averaged_.data() + a * block_nodes);
+    for (std::size_t a = 0; a < grid_.active(); ++a) filling_.judge(a, averaged_.data() + a * block_nodes);
+  }
   add_time(seconds_.volumetric, since);
 }
 

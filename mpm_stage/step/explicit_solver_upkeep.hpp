@@ -114,7 +114,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
   if (averaging_) {
     averaged_tiles_.resize(grid_.occupied() * tile_nodes);
     averaged_.resize(grid_.active() * block_nodes);
-    filling_.lay_out(grid_, [this](std::size_t a, int n) { return share_above(a, n); });
+    if (filling_.active()) filling_.lay_out(grid_, [this](std::size_t a, int n) { return share_above(a, n); });
   }
   if (ground_.any()) {
     gap_tiles_.resize(tiles_.size());

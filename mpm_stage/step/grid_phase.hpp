@@ -70,7 +70,7 @@ GridSums<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::rest_block(std::size_
       std::fill_n(damped_.data() + node_of(f, a), block_nodes, std::array<double, Dim>{});
     if (ground_.of_block(a)) std::fill_n(grip_.data() + node_of(f, a), block_nodes, NodeGrip{});
   }
-  if (averaging_ && !filling_.is_known(a)) {
+  if (filling_.active() && !filling_.is_known(a)) {
     filling_.begin(a, true);
     Vec4 sum[block_nodes], force[block_nodes];
     for (int f = 0; f < fields_.count(); ++f)
@@ -90,7 +90,7 @@ GridSums<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::move_block(std::size_
   NodeSums node[most_fields];
   const bool touched = ground_.of_block(a) || !drive.untouched;
   GridSums<Dim> sums;
-  if (averaging_) filling_.begin(a, false);
+  if (filling_.active()) filling_.begin(a, false);
   for (int f = 0; f < fields_.count(); ++f) {
     if (!fields_.present(f, a)) continue;
     if (needs_all_sums()) {
@@ -100,7 +100,7 @@ GridSums<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::move_block(std::size_
       gather_sums<Dim, Shape, Split>(fields_.around(f, a), tiles_of(f), beside_of(f), own_sum[f],
                                      own_force[Split ? f : 0]);
     }
-    if (averaging_) filling_.weigh(a, node[f].sum);
+    if (filling_.active()) filling_.weigh(a, node[f].sum);
     if (!touched)
       sums += move_free_nodes<Dim, Split>(drive.dt, drive.acceleration, mass_cutoff_, node[f].sum, node[f].force,
                                           velocity_.data() + node_of(f, a),

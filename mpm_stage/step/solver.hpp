@@ -39,9 +39,9 @@ struct SolverOptions {
   double flow_transfer_damping = 0.05;
   int fmpm_order = 4;  // terms of the full mass matrix's inverse (mass_filter.hpp); 1 is PIC
   bool volumetric_average = true;
-  double crowding_relief =
-      1.0;               // 1, share of a patch's crowding that goes with a unit of shear strain (patch_filling.hpp)
-  double courant = 0.5;  // 1, dt = courant h / max(c + |v|)
+  // 1, share of a patch's crowding that goes with a unit of shear strain (patch_filling.hpp).
+  double crowding_relief = 1.0;
+  double courant = 0.5;              // 1, dt = courant h / max(c + |v|)
   double maximum_step = 1e30;        // s
   bool soil_limits_friction = true;  // ground takes no more shear than phi = 0 soil carries (soil_limit.hpp)
   double contact_reach = 0.5;        // cells: nodes up to this distance above the ground belong to it

@@ -34,6 +34,7 @@ class PatchFilling {
   // `relief` is the share of a patch's crowding that goes with a unit of shear strain; 0: none of it.
   explicit PatchFilling(double relief) : relief_(relief) {}
 
+  bool active() const { return relief_ > 0.0; }
   double relief() const { return relief_; }
   std::size_t bytes() const {
     return beside_.capacity() * sizeof(beside_[0]) + 3 * room_.capacity() * sizeof(double) + weighed_.capacity();
@@ -87,9 +88,7 @@ class PatchFilling {
       const std::size_t at = number(a, k);
       PatchFit& out = fit[first(k) + patch_offset<B>(1)];
       if (filling_[at] > full)
-        out[1] = all_around(a, k, [this](std::ptrdiff_t other) { return other >= 0 && !is_open(other); })
-                     ? filling_[at] - 1.0
-                     : std::max(0.0, filling_[at] - 1.0 - noise);
+        out[1] = is_among_full(a, k) ? filling_[at] - 1.0 : std::max(0.0, filling_[at] - 1.0 - noise);
     }
   }
 
@@ -106,21 +105,30 @@ class PatchFilling {
   static constexpr int first(int k) { return 2 * (k % side + k / side % side * B + k / (side * side) * B * B); }
   static constexpr int centre(int k) { return first(k) + 1 + B + (Dim == 3 ? B * B : 0); }
 
-  bool is_open(std::ptrdiff_t patch) const { return room_[patch] > 0.0 && filling_[patch] < full; }
-
-  // Whether holds(number) for patch k of active block a and all around it; -1: there is no block.
-  template <class Condition>
-  bool all_around(std::size_t a, int k, Condition holds) const {
-    for (int n = 0; n < Block<Dim>::neighbours; ++n) {
-      int block = 0, patch = 0;
-      for (int d = 0, rest = k, three = 1, stride = 1; d < Dim; ++d, rest /= side, three *= 3, stride *= side) {
-        const int i = rest % side + neighbour_step<Dim>(n)[static_cast<std::size_t>(d)] + side;
-        block += i / side * three;
-        patch += i % side * stride;
+  // Patch k's neighbours, itself included: as node_place, with the patch's number in its block for the node's.
+  using Places = std::array<std::array<NodePlace, Block<Dim>::neighbours>, patches>;
+  static constexpr Places places() {
+    Places all{};
+    for (int k = 0; k < patches; ++k)
+      for (int n = 0; n < Block<Dim>::neighbours; ++n) {
+        auto step = neighbour_step<Dim>(n);
+        for (int& s : step) s *= 2;
+        NodePlace place = node_place<Dim>(first(k), step);
+        const int i = place.node % B / 2, j = place.node / B % B / 2, l = place.node / (B * B) / 2;
+        place.node = (l * side + j) * side + i;
+        all[static_cast<std::size_t>(k)][static_cast<std::size_t>(n)] = place;
       }
-      const int other = beside_[a][static_cast<std::size_t>(block)];
-      if (!holds(other < 0 ? -1 : static_cast<std::ptrdiff_t>(number(static_cast<std::size_t>(other), patch))))
-        return false;
+    return all;
+  }
+  static inline const Places places_around = places();
+
+  // Whether patch k of active block a and all around it are full, or hold no room.
+  bool is_among_full(std::size_t a, int k) const {
+    for (const NodePlace& place : places_around[static_cast<std::size_t>(k)]) {
+      const int block = beside_[a][static_cast<std::size_t>(place.block)];
+      if (block < 0) return false;
+      const std::size_t at = number(static_cast<std::size_t>(block), place.node);
+      if (room_[at] > 0.0 && filling_[at] < full) return false;
     }
     return true;
   }

@@ -37,8 +37,7 @@ namespace tailrun::mpm {
 // and the mass of number 2; number 4, in 3-D, is a (X_1 X_2, X_2 X_0, 0, 0).
 using PatchSum = Vec4;
 // A patch's linear function: number 0 is the value at its centre and the slopes per cell, Pa; number 1 is the share of
-// the way to it that the particles go, the patch's crowding
-// (patch_filling.hpp).
+// the way to it that the particles go, and the patch's crowding (patch_filling.hpp).
 using PatchFit = Vec4;
 
 // What the elastic law has for changes of volume.

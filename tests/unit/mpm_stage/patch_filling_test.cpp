@@ -30,7 +30,7 @@ Particles<2> square(const std::function<Point(Point)>& moved) {
 
 // What is found in the patch around a point.
 struct Found {
-  Found(Particles<2> particles, double relief) : P(std::move(particles)), filling(relief) {
+  explicit Found(Particles<2> particles) : P(std::move(particles)) {
     grid.sort(P);
     filling.lay_out(grid, [](std::size_t, int) { return 1.0; });
     std::vector<PatchSum> sums(grid.active() * Block<2>::nodes, PatchSum{});
@@ -73,26 +73,57 @@ struct Found {
 
   Particles<2> P;
   BlockGrid<2> grid{h, {0.0, 0.0}, QuadraticShape::shift};
-  PatchFilling<2> filling;
+  PatchFilling<2> filling{1.0};
   std::vector<PatchFit> fits;
   std::function<PatchFit(double, double)> at;
 };
 
 TEST_CASE("particles that stand as close as their volumes are not crowded, at the surface neither") {
-  Found found(square([](Point x) { return x; }), 1.0);
+  Found found(square([](Point x) { return x; }));
   for (const double x : {0.5, 1.5, 5.5, 11.5})
     for (const double y : {0.5, 6.5, 11.5}) CHECK(found.at(x, y)[1] == doctest::Approx(0.0));
 }
 
 TEST_CASE("particles closer than their volumes are crowded by as much") {
-  Found found(square([](Point x) { return Point{x[0] / 1.1, x[1]}; }), 1.0);
+  Found found(square([](Point x) { return Point{x[0] / 1.1, x[1]}; }));
   CHECK(found.at(5.5, 6.5)[1] == doctest::Approx(0.1).epsilon(0.1));
 }
 
 TEST_CASE("particles farther apart than their volumes count where all around is full, and not at the surface") {
-  Found found(square([](Point x) { return Point{1.05 * x[0], x[1]}; }), 1.0);
+  Found found(square([](Point x) { return Point{1.05 * x[0], x[1]}; }));
   CHECK(found.at(5.5, 6.5)[1] == doctest::Approx(-1.0 + 1.0 / 1.05).epsilon(0.2));
   CHECK(found.at(5.5, 11.5)[1] == 0.0);
+}
+
+TEST_CASE("crowded particles give up volume with their shear, and are given the energy that it takes") {
+  constexpr int T = Tile<2, QuadraticShape>::side;
+  constexpr double crowding = 0.1, relief = 0.5;
+  Material clay;
+  clay.law = &law_named("tresca");
+  clay.youngs_modulus = 5e6;
+  clay.poisson_ratio = 0.33;
+  const MaterialConstants k = constants_of(clay, h);
+  const double K = VolumetricLaw<2>(k).modulus;
+  auto P = square([](Point x) { return x; });
+  AlignedVector<PatchFit> fit(Tile<2, QuadraticShape>::nodes, PatchFit{});
+  for (int j = 0; j + 1 < T; j += 2)
+    for (int i = 0; i + 1 < T; i += 2) fit[static_cast<std::size_t>(j * T + i + 1)] = PatchFit{0.0, crowding, 0.0, 0.0};
+  const std::size_t n = 8;  // of the first row, in the tile that begins at the origin
+  double wanted = 0.0, increment[n];
+  for (std::size_t p = 0; p < n; ++p) {
+    P.stress[0][p] = P.stress[1][p] = -1e4 * static_cast<double>(p);
+    P.gradient[1][p] = 0.02;   // shear
+    P.gradient[0][p] = 0.001;  // and stretch along x: shear too, and volume
+  }
+  const double given =
+      gather_volumetric<2, QuadraticShape>(k, P, 0, n, {0.0, 0.0}, 1.0 / h, fit.data(), relief, increment);
+  const double off = relief * crowding * std::sqrt(0.02 * 0.02 + 0.001 * 0.001);
+  for (std::size_t p = 0; p < n; ++p) {
+    CHECK(increment[p] == doctest::Approx(0.001 - off));
+    const double before = P.stress[0][p] + K * 0.001, after = P.stress[0][p] + K * increment[p];
+    wanted += P.volume[p] * (after * after - before * before) / (2.0 * K);
+  }
+  CHECK(given == doctest::Approx(wanted));
 }
 
 }  // namespace

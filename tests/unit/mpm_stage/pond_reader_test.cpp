@@ -9,6 +9,7 @@
 #include "common/error.hpp"
 #include "common/warnings.hpp"
 #include "mpm_stage/scene/scene.hpp"
+#include "tests/unit/mpm_stage/four_particles.hpp"
 
 using namespace tailrun;
 using namespace tailrun::mpm;
@@ -21,15 +22,7 @@ namespace fs = std::filesystem;
 Scene read(const std::string& said, const std::string& gravity = "[0, -9.81]") {
   const fs::path stem = fs::temp_directory_path() / ("tailrun_ponds_" + std::to_string(getpid()));
   const fs::path particles_path = stem.string() + ".h5", case_path = stem.string() + ".json";
-  ParticleSet p;
-  p.material_names = {"soil"};
-  p.position = {0.25, 0.25, 0, 0.75, 0.25, 0, 0.25, 0.75, 0, 0.75, 0.75, 0};
-  p.velocity.assign(12, 0.0);
-  p.mass.assign(4, 500.0);
-  p.volume.assign(4, 0.25);
-  p.effective_stress.assign(16, 0.0);
-  p.pore_pressure.assign(4, 0.0);
-  p.material_id.assign(4, 0);
+  ParticleSet p = four_particles({"soil"});
   p.ponds = {{"face", 3.0, {-5.0, 2.0}, {true, false}, 1030.0}};
   write_particles(particles_path, p, {});
   std::ofstream(case_path) << R"({"grid": {"cell_size": 1}, "time": {"end": 1}, "gravity": )" << gravity

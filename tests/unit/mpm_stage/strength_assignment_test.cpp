@@ -10,6 +10,7 @@
 #include "common/residual_strength/relations.hpp"
 #include "common/warnings.hpp"
 #include "mpm_stage/scene/scene.hpp"
+#include "tests/unit/mpm_stage/four_particles.hpp"
 
 using namespace tailrun;
 using namespace tailrun::mpm;
@@ -24,15 +25,8 @@ const std::string weber =
     R"({"model": "weber", "blow_count": 6, "percentile": 50, "factor": 0.9, "drained_cap": false})";
 
 // Four particles: three of liquefied soil with strengths by a law, one of rock without.
-ParticleSet four_particles(const std::string& law) {
-  ParticleSet p;
-  p.material_names = {"liquefied", "rock"};
-  p.position = {0.25, 0.25, 0, 0.75, 0.25, 0, 0.25, 0.75, 0, 0.75, 0.75, 0};
-  p.velocity.assign(12, 0.0);
-  p.mass.assign(4, 500.0);
-  p.volume.assign(4, 0.25);
-  p.effective_stress.assign(16, 0.0);
-  p.pore_pressure.assign(4, 0.0);
+ParticleSet particles_with(const std::string& law) {
+  ParticleSet p = four_particles({"liquefied", "rock"});
   p.material_id = {0, 0, 0, 1};
   p.initial_vertical_effective_stress.assign(std::begin(stresses), std::end(stresses));
   p.residual_strength = {0.0, 0.0, 0.0, 0.0};
@@ -73,7 +67,7 @@ std::string message(const std::string& said, const ParticleSet& p,
 }  // namespace
 
 TEST_CASE("strengths are the hand-over's, times the factor") {
-  const ParticleSet p = four_particles(weber);
+  const ParticleSet p = particles_with(weber);
   CHECK(read("{}", p).cohesion == p.residual_strength);
   const Scene half = read(R"({"factor": 0.5})", p);
   for (std::size_t k = 0; k < 3; ++k) CHECK(half.cohesion[k] == 0.5 * p.residual_strength[k]);
@@ -90,7 +84,7 @@ TEST_CASE("strengths are the hand-over's, times the factor") {
 }
 
 TEST_CASE("the very law of the hand-over, chosen again, gives its strengths to the last bit") {
-  const ParticleSet p = four_particles(weber);
+  const ParticleSet p = particles_with(weber);
   for (const char* said : {R"({"model": "weber"})", R"({"percentile": 50})", R"({"factor": 1.0, "model": "weber"})",
                            R"({"model": "weber", "blow_count": 6, "percentile": 50, "drained_cap": false})"}) {
     const Scene again = read(said, p);
@@ -100,7 +94,7 @@ TEST_CASE("the very law of the hand-over, chosen again, gives its strengths to t
 }
 
 TEST_CASE("another model acts by each particle's sigma'_v0, and the factor multiplies what it gives") {
-  const Scene scene = read(R"({"model": "kramer_wang", "percentile": 33, "factor": 0.8})", four_particles(weber));
+  const Scene scene = read(R"({"model": "kramer_wang", "percentile": 33, "factor": 0.8})", particles_with(weber));
   const double z = standard_normal_quantile(0.33);
   for (std::size_t k = 0; k < 3; ++k)
     CHECK(scene.cohesion[k] == doctest::Approx(0.8 * kramer_wang_2015(6, stresses[k], z)).epsilon(1e-14));
@@ -109,23 +103,23 @@ TEST_CASE("another model acts by each particle's sigma'_v0, and the factor multi
 }
 
 TEST_CASE("a particles file without laws takes a model that is given in full") {
-  const ParticleSet p = four_particles("");
+  const ParticleSet p = particles_with("");
   CHECK(read(R"({"model": "constant", "strength": 4000, "drained_cap": false})", p).cohesion[1] == 4000.0);
   CHECK(message(R"({"percentile": 33})", p).find("/residual_strength/model: missing: ") != std::string::npos);
   CHECK(message(R"({"model": "weber"})", p).find("/residual_strength/blow_count: missing") != std::string::npos);
 }
 
 TEST_CASE("what cannot be chosen is an error that says why") {
-  ParticleSet p = four_particles(weber);
+  ParticleSet p = particles_with(weber);
   CHECK(message(R"({"model": "webber"})", p).find("Did you mean 'weber'?") != std::string::npos);
   CHECK(message(R"({"modle": "weber"})", p).find("Did you mean 'model'?") != std::string::npos);
   CHECK(message(R"({"model": "weber", "percentil": 3})", p).find("Did you mean 'percentile'?") != std::string::npos);
   CHECK(message(R"({"model": "weber", "percentile": 130})", p).find("allowed is (0, 100)") != std::string::npos);
   CHECK(message(R"({"model": "weber"})", p, "5000").find("no soil whose strength could be chosen") !=
         std::string::npos);
-  CHECK(message(R"({"percentile": 33})", four_particles(R"({"model": "constant", "strength": 5000})"))
+  CHECK(message(R"({"percentile": 33})", particles_with(R"({"model": "constant", "strength": 5000})"))
             .find("the model 'constant' has no percentile") != std::string::npos);
-  CHECK(message(R"({"model": "weber"})", four_particles("[1]")).find("/tailrun/strength_laws, row 0: is not a JSON") !=
+  CHECK(message(R"({"model": "weber"})", particles_with("[1]")).find("/tailrun/strength_laws, row 0: is not a JSON") !=
         std::string::npos);
   p.initial_vertical_effective_stress.clear();
   CHECK(message(R"({"model": "weber"})", p).find("no dataset /VTKHDF/PointData/initial_vertical_effective_stress") !=
@@ -133,7 +127,7 @@ TEST_CASE("what cannot be chosen is an error that says why") {
 }
 
 TEST_CASE("soil that was handed over without a strength may get one here") {
-  ParticleSet p = four_particles(weber);
+  ParticleSet p = particles_with(weber);
   p.residual_strength.clear();
   p.strength_law = {-1, -1, -1, -1};
   CHECK(message("{}", p).find("asks for residual_strength") != std::string::npos);
@@ -141,7 +135,7 @@ TEST_CASE("soil that was handed over without a strength may get one here") {
 }
 
 TEST_CASE("stresses beyond the case histories are warned about where the law is chosen") {
-  ParticleSet p = four_particles(weber);
+  ParticleSet p = particles_with(weber);
   p.initial_vertical_effective_stress[1] = 600e3;
   forget_warnings();
   read("{}", p);
@@ -152,7 +146,7 @@ TEST_CASE("stresses beyond the case histories are warned about where the law is 
 }
 
 TEST_CASE("bins that were materials of their own in an earlier version are told what became of them") {
-  ParticleSet p = four_particles(weber);
+  ParticleSet p = particles_with(weber);
   p.material_names = {"liquefied_2", "rock"};
   CHECK(message("{}", p).find("make the hand-over again and they are all 'liquefied'") != std::string::npos);
 }

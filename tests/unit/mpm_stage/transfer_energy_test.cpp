@@ -51,7 +51,7 @@ void check_dust(double damping) {
     P.identity[p] = static_cast<std::int32_t>(p);
   }
   SolverOptions o;
-  o.transfer_damping = damping;
+  o.transfer_damping = o.flow_transfer_damping = damping;
   o.maximum_step = 1e-3;
   const Terrain none;
   const auto s = make_solver<Dim>(o, h, {}, std::move(P), {clay(1.0, 0.0)}, none, Walls<Dim>{});
@@ -98,7 +98,7 @@ TEST_CASE("two particles of clay that pass each other lose no more in plastic wo
     // J, of the motion against each other.
     const double most = 0.25 * P.mass[0] * (6.0 * 6.0 + 2.0 * 2.0), start = kinetic_energy(P);
     SolverOptions o;
-    o.transfer_damping = damping;
+    o.transfer_damping = o.flow_transfer_damping = damping;
     const Terrain none;
     const auto s = make_solver<2>(o, h, {}, std::move(P), {clay(5e6, 3000.0)}, none, Walls<2>{});
     s->start(1e30);
@@ -112,4 +112,34 @@ TEST_CASE("two particles of clay that pass each other lose no more in plastic wo
     CHECK(s->work().plastic > 20.0);
     CHECK(s->work().plastic < most);
   }
+}
+
+TEST_CASE("phi = 0 soil is damped by the one number, soil that keeps its shape by the other") {
+  const auto after = [](const char* law, double damping, double of_flow) {
+    Particles<2> P;
+    P.resize(2, true, false);
+    for (std::size_t p = 0; p < 2; ++p) {
+      P.position[0][p] = 3.0 + 0.1 * static_cast<double>(p);
+      P.position[1][p] = 3.1;
+      P.velocity[0][p] = p == 0 ? 1.0 : -0.5;
+      P.volume[p] = 0.25 * h * h;
+      P.mass[p] = 1900.0 * P.volume[p];
+      P.strength[p] = 3000.0;
+      P.identity[p] = static_cast<std::int32_t>(p);
+    }
+    Material soil = clay(5e6, 3000.0);
+    soil.law = &law_named(law);
+    SolverOptions o;
+    o.transfer_damping = damping;
+    o.flow_transfer_damping = of_flow;
+    const Terrain none;
+    const auto s = make_solver<2>(o, h, {}, std::move(P), {soil}, none, Walls<2>{});
+    s->start(1e30);
+    for (int n = 0; n < 5; ++n) s->step({}, {}, 1e30);
+    return s->particles().velocity[0][0];
+  };
+  CHECK(after("tresca", 0.3, 0.05) == after("tresca", 0.9, 0.05));
+  CHECK(after("tresca", 0.3, 0.05) != after("tresca", 0.3, 0.3));
+  CHECK(after("linear_elastic", 0.3, 0.05) == after("linear_elastic", 0.3, 0.3));
+  CHECK(after("linear_elastic", 0.3, 0.05) != after("linear_elastic", 0.9, 0.05));
 }

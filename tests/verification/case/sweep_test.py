@@ -87,7 +87,7 @@ with tempfile.TemporaryDirectory() as name:
         process.communicate()
         assert process.returncode != 0
         if number == signal.SIGTERM:
-            assert len(list(store.glob("mpm-*/work/mpm/checkpoint.h5"))) >= 1, "the programs were told to stop"
+            assert len(list(store.glob("mpm-*/*/mpm/checkpoint.h5"))) >= 1, "the programs were told to stop"
     there = {row for row in store.glob("mpm-*/member.json")}
     (clone.root / "slow").unlink()
     result, ran = clone.make("sweep-files", "-j2", status=0)
