@@ -220,6 +220,12 @@ class ContactPairs {
     pairs_[count_++] = pair;
   }
   int count() const { return count_; }
+  // Each in turn, once. Returns by how much their impulses changed (N s).
+  double press() {
+    double change = 0.0;
+    for (ContactPair<Dim>& pair : *this) change += pair.press();
+    return change;
+  }
   std::pair<int, int> bodies(int k) const { return bodies_[k]; }
   const ContactPair<Dim>& operator[](int k) const { return pairs_[k]; }
   ContactPair<Dim>* begin() { return pairs_.data(); }

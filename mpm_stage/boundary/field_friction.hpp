@@ -31,13 +31,6 @@ struct FieldGrip {
 
   bool any() const { return mass[0] > 0.0; }
   double reduced_mass() const { return mass[0] * mass[1] / (mass[0] + mass[1]); }
-  // `other`, of the same bodies, presses them together once more.
-  void press(const FieldGrip& other) {
-    if (any() && other.any() && friction < no_soil_limit)
-      friction += other.friction;
-    else if (other.any())
-      *this = other;
-  }
   // Coulomb's friction from the push of the last steps.
   void smooth(double dt, double share, double& smoothed) {
     const double per_push = reduced_mass() * dt;

@@ -13,20 +13,9 @@
 
 #include "mpm_stage/boundary/contact_gap.hpp"
 #include "mpm_stage/boundary/friction_pool.hpp"
+#include "mpm_stage/boundary/ground_push.hpp"
 
 namespace tailrun::mpm {
-
-// State of a node after the normal part of contact. mass 0: not in contact.
-struct NodeGrip {
-  double mass = 0.0;      // kg
-  double friction = 0.0;  // N s, friction coefficient times normal impulse
-  std::array<double, 2> normal{};
-  double carried = 0.0;  // N s, what the soil can carry
-  double sliding = 0.0;  // N s, momentum along the ground before friction
-  bool pushed = false;   // in this step the ground has stopped an approach
-
-  bool any() const { return mass > 0.0; }
-};
 
 // The push of the ground as friction sees it. A stiff body at rest rings, and its normal impulse with it; friction that
 // follows each swing lets go in the troughs and cannot make up for it at the crests, so a block creeps down a slope
@@ -67,34 +56,6 @@ inline void smooth_grip(const NodeContact& contact, double mass, double dt, doub
 // N s, what the soil at a node carries in a step on the part of the ground's surface (m, m2) that is the node's.
 inline double carried_by_soil(const Gap& soil, double surface, double dt) {
   return soil.volume > 0.0 ? dt * surface * soil.strength / soil.volume : no_soil_limit;
-}
-
-// Stops the approach of a node. The approach is free up to `allowed` (m/s), at which the gap between material and
-// ground closes in this step (contact_gap.hpp): a node's shape function reaches over a gap, and without this material
-// would come to rest in the air and climb a little with each bounce.
-template <int Dim>
-inline NodeGrip stop_approach(const NodeContact& contact, double mass, double allowed, std::array<double, Dim>& v) {
-  NodeGrip grip;
-  if (contact.adhere && allowed == 0.0) {
-    v.fill(0.0);
-    grip.pushed = true;
-    return grip;
-  }
-  // Two surfaces of a corner are taken in turn, twice, so that neither is left pushed through.
-  const int rounds = contact.count > 1 ? 2 : 1;
-  for (int r = 0; r < rounds; ++r)
-    for (int k = 0; k < contact.count; ++k) {
-      const auto& n = contact.point[k].normal;
-      const double approach = -(v[0] * n[0] + v[1] * n[1]) - allowed;
-      if (approach <= 0.0) continue;
-      v[0] += approach * n[0];
-      v[1] += approach * n[1];
-      grip.mass = mass;
-      grip.pushed = true;
-      grip.friction += contact.point[k].friction * mass * approach;
-      grip.normal = n;
-    }
-  return grip;
 }
 
 // m/s, the part of `v` along the ground.

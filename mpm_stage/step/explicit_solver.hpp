@@ -17,10 +17,11 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 
 #include "common/error.hpp"
 #include "mpm_stage/boundary/contact_gap.hpp"
-#include "mpm_stage/boundary/field_contact.hpp"
+#include "mpm_stage/boundary/contact_turns.hpp"
 #include "mpm_stage/boundary/ground_friction.hpp"
 #include "mpm_stage/boundary/half_spaces.hpp"
 #include "mpm_stage/boundary/held_directions.hpp"
@@ -194,6 +195,9 @@ class ExplicitSolver final : public Solver<Dim> {
   struct NodeSums {
     const Vec4 *sum = nullptr, *force = nullptr;
   };
+  // How far material of a field is from the ground, at the nodes of a block near it.
+  using NodeGaps = std::optional<std::array<Gap, block_nodes>>;
+  using NodeFlags = std::array<bool, block_nodes>;
   // The bodies that meet at a node, and which one each field belongs to (-1: the field is not there).
   struct NodeBodies {
     std::array<BodyAtNode<Dim>, most_fields> body;
@@ -292,7 +296,9 @@ class ExplicitSolver final : public Solver<Dim> {
   GridSums<Dim> rest_block(std::size_t a);
   GridSums<Dim> move_block(std::size_t a, const Drive& drive);
   void drive_nodes(int f, std::size_t a, const Drive& drive, const NodeSums& node, GridSums<Dim>& sums);
-  void touch_boundaries(int f, std::size_t a, const Drive& drive, const NodeSums& node, GridSums<Dim>& sums);
+  void gather_gaps(std::size_t a, NodeGaps* gap);
+  void touch_boundaries(int f, std::size_t a, const Drive& drive, const NodeSums& node, const NodeGaps& gap,
+                        const NodeFlags& settled, GridSums<Dim>& sums);
   unsigned fields_at(std::size_t a, int n, const NodeSums* node) const;
   NodeBodies bodies_at(std::size_t a, int n, unsigned there, const NodeSums* node) const;
   void set_motion(std::size_t node, BodyAtNode<Dim>& body) const;
@@ -306,9 +312,11 @@ class ExplicitSolver final : public Solver<Dim> {
   void rub_fields_of(std::size_t s);
   void brake_body(unsigned fields, std::size_t a, int n, double mass, const std::array<double, Dim>& dv,
                   GridSums<Dim>& sums);
-  void part_fields(std::size_t a, double dt, const NodeSums* node, GridSums<Dim>& sums);
+  void part_fields(std::size_t a, double dt, const NodeSums* node, const NodeGaps* gap, NodeFlags& settled,
+                   GridSums<Dim>& sums);
   void take_over(std::size_t a, int n, const NodeSums* node, const NodeBodies& bodies, GridSums<Dim>& sums);
-  void settle_on_ground(std::size_t a, double dt, const NodeSums* node, const std::uint8_t* met, GridSums<Dim>& sums);
+  void settle_on_ground(std::size_t a, int n, double dt, const NodeSums* node, const NodeGaps* gap,
+                        const NodeContact& contact, NodeBodies& bodies, ContactPairs<Dim>& pairs, GridSums<Dim>& sums);
   void book_impacts(int f, std::size_t a, const Drive& drive, const NodeSums& node, GridSums<Dim>& sums);
   void continue_velocities();
   void add_up();

@@ -163,18 +163,17 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::keep_grips(std::size_t a, int 
     const auto [i, j] = pairs.bodies(k);
     grip.fields = {static_cast<std::uint8_t>(of_body[i]), static_cast<std::uint8_t>(of_body[j])};
     const int pair = pair_of(std::countr_zero(of_body[i]), std::countr_zero(of_body[j]), fields_.count());
-    field_grip_[grip_of(pair, a) + static_cast<std::size_t>(n)].press(grip);
+    field_grip_[grip_of(pair, a) + static_cast<std::size_t>(n)] = grip;
   }
 }
 
-// Contact at the shared nodes of block a.
+// Contact at the shared nodes of block a, with the ground, too, where it is near: `settled` gets those nodes.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::part_fields(std::size_t a, double dt, const NodeSums* node,
+                                                              const NodeGaps* gap, NodeFlags& settled,
                                                               GridSums<Dim>& sums) {
-  // A light layer between heavy bodies passes on little with each round.
-  constexpr int most_rounds = 30;
-  constexpr double little = 1e-6;
   constexpr unsigned both_sides = 0b101;
+  const NodeContact* contact = ground_.of_block(a);
   std::uint8_t* meeting = meeting_.data() + a * block_nodes;
   for (int n = 0; n < block_nodes; ++n) {
     const unsigned there = fields_at(a, n, node);
@@ -185,13 +184,11 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::part_fields(std::size_t a, dou
     if (!meeting[n] || !known) continue;
     NodeBodies bodies = bodies_at(a, n, there, node);
     auto pairs = contact_pairs(bodies, dt);
-    double first = 0.0, change = 0.0;
-    for (int round = 0; round < most_rounds; ++round) {
-      change = 0.0;
-      for (ContactPair<Dim>& pair : pairs) change += pair.press();
-      if (round == 0) first = change;
-      if (pairs.count() < 2 || change <= little * first) break;
-    }
+    settled[n] = contact && contact[n].count > 0;
+    if (settled[n])
+      settle_on_ground(a, n, dt, node, gap, contact[n], bodies, pairs, sums);
+    else
+      settle(pairs);
     for (ContactPair<Dim>& pair : pairs) pair.join();
     keep_grips(a, n, bodies, pairs);
     take_over(a, n, node, bodies, sums);
@@ -218,48 +215,30 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::take_over(std::size_t a, int n
   }
 }
 
-// Where one of two fields that touch rests on the ground it cannot give way, and passes on what presses it there. Both
-// contacts are taken in turn; each takes energy, so that what is left after the last round is harmless. `met` as
-// meeting_ was at the step's start.
+// The contacts between the bodies of node n and of each with the ground; leaves the ground's push in grip_.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::settle_on_ground(std::size_t a, double dt, const NodeSums* node,
-                                                                   const std::uint8_t* met, GridSums<Dim>& sums) {
-  constexpr int most_rounds = 20;
-  const NodeContact* contact = ground_.of_block(a);
-  for (int n = 0; n < block_nodes; ++n) {
-    if (contact[n].count == 0 || !met[n] || !meeting_[a * block_nodes + static_cast<std::size_t>(n)]) continue;
-    const unsigned there = fields_at(a, n, node);
-    bool rest = false;
-    for (int f = 0; f < fields_.count(); ++f)
-      rest = rest || ((there >> f & 1U) && grip_[node_of(f, a) + static_cast<std::size_t>(n)].pushed);
-    if (!rest) continue;
-    NodeBodies bodies = bodies_at(a, n, there, node);
-    if (bodies.count < 2) continue;
-    std::array<bool, most_fields> rests{};
-    std::array<double, most_fields> friction{};
-    for (int f = 0; f < fields_.count(); ++f)
-      if (bodies.of_field[f] >= 0 && grip_[node_of(f, a) + static_cast<std::size_t>(n)].pushed)
-        rests[bodies.of_field[f]] = true;
-    const NodeBodies free = bodies;
-    auto pairs = contact_pairs(bodies, dt);
-    for (int round = 0; round < most_rounds; ++round) {
-      double change = 0.0;
-      for (ContactPair<Dim>& pair : pairs) change += pair.press();
-      if (change <= 0.0) break;
-      for (int b = 0; b < bodies.count; ++b)
-        if (rests[b])
-          friction[b] += stop_approach<Dim>(contact[n], bodies.body[b].mass, 0.0, bodies.body[b].v).friction;
-    }
-    for (int f = 0; f < fields_.count(); ++f) {
-      const int b = bodies.of_field[f];
-      if (b < 0) continue;
-      NodeGrip& grip = grip_[node_of(f, a) + static_cast<std::size_t>(n)];
-      const double m = node[f].sum[n][0];
-      if (grip.pushed) grip.friction += friction[b] * m / bodies.body[b].mass;
-      for (int d = 0; d < Dim; ++d) sums.impulse[d] += m * (bodies.body[b].v[d] - free.body[b].v[d]);
-    }
-    keep_grips(a, n, bodies, pairs);
-    take_over(a, n, node, bodies, sums);
+void ExplicitSolver<Dim, Shape, Split, Transfer>::settle_on_ground(std::size_t a, int n, double dt,
+                                                                   const NodeSums* node, const NodeGaps* gap,
+                                                                   const NodeContact& contact, NodeBodies& bodies,
+                                                                   ContactPairs<Dim>& pairs, GridSums<Dim>& sums) {
+  std::array<double, most_fields> clearance;
+  clearance.fill(no_gap_known);
+  for (int f = 0; f < fields_.count(); ++f)
+    if (const int b = bodies.of_field[f]; b >= 0) clearance[b] = std::min(clearance[b], (*gap[f])[n].value);
+  std::array<GroundPush<Dim>, most_fields> ground;
+  for (int b = 0; b < bodies.count; ++b)
+    ground[b] = GroundPush<Dim>(contact, bodies.body[b].mass, std::max(0.0, clearance[b]) / dt);
+  settle(pairs, bodies.body.data(), ground.data(), bodies.count);
+  for (int b = 0; b < bodies.count; ++b)
+    for (int d = 0; d < Dim; ++d) sums.impulse[d] += ground[b].impulse()[d];
+  for (int f = 0; f < fields_.count(); ++f) {
+    const int b = bodies.of_field[f];
+    if (b < 0) continue;
+    // Fields that move as one share the push by their masses.
+    NodeGrip& grip = grip_[node_of(f, a) + static_cast<std::size_t>(n)] = ground[b].grip();
+    const double share = node[f].sum[n][0] / bodies.body[b].mass;
+    grip.mass *= share;
+    grip.friction *= share;
   }
 }
 

@@ -108,16 +108,16 @@ GridSums<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::move_block(std::size_
     else
       drive_nodes(f, a, drive, node[f], sums);
   }
-  std::uint8_t met[block_nodes];
+  NodeGaps gap[most_fields];
+  NodeFlags settled{};
+  if (ground_.of_block(a)) gather_gaps(a, gap);
   if (fields_.shared(a)) {
-    std::copy_n(meeting_.data() + a * block_nodes, block_nodes, met);
     clear_grips(a);
-    part_fields(a, drive.dt, node, sums);
+    part_fields(a, drive.dt, node, gap, settled, sums);
   }
   if (touched)
     for (int f = 0; f < fields_.count(); ++f)
-      if (fields_.present(f, a)) touch_boundaries(f, a, drive, node[f], sums);
-  if (fields_.shared(a) && ground_.of_block(a)) settle_on_ground(a, drive.dt, node, met, sums);
+      if (fields_.present(f, a)) touch_boundaries(f, a, drive, node[f], gap[f], settled, sums);
   if constexpr (Split)
     if (touched || fields_.shared(a)) {
       sums.impact = -sums.friction - sums.contact;
@@ -175,17 +175,25 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::drive_nodes(int f, std::size_t
   }
 }
 
-// The ground stops the approach of the nodes near it, frictional walls hold theirs; what shaking gives is booked.
+// How far the fields of block a are from the ground; no node of theirs touches it yet.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::touch_boundaries(int f, std::size_t a, const Drive& drive,
-                                                                   const NodeSums& node, GridSums<Dim>& sums) {
-  const double dt = drive.dt;
-  const NodeContact* contact = ground_.of_block(a);
-  Gap gap[block_nodes];
-  if (contact) {
-    gather_tiles<Dim, Shape>(fields_.around(f, a), gap_tiles_.data() + fields_.tile(f, 0) * tile_nodes, gap);
+void ExplicitSolver<Dim, Shape, Split, Transfer>::gather_gaps(std::size_t a, NodeGaps* gap) {
+  for (int f = 0; f < fields_.count(); ++f) {
+    if (!fields_.present(f, a)) continue;
+    gather_tiles<Dim, Shape>(fields_.around(f, a), gap_tiles_.data() + fields_.tile(f, 0) * tile_nodes,
+                             gap[f].emplace().data());
     std::fill_n(grip_.data() + node_of(f, a), block_nodes, NodeGrip{});
   }
+}
+
+// The ground stops the approach of the nodes near it unless that is settled, frictional walls hold theirs; what shaking
+// gives is booked.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::touch_boundaries(int f, std::size_t a, const Drive& drive,
+                                                                   const NodeSums& node, const NodeGaps& gap,
+                                                                   const NodeFlags& settled, GridSums<Dim>& sums) {
+  const double dt = drive.dt;
+  const NodeContact* contact = ground_.of_block(a);
   for (int n = 0; n < block_nodes; ++n) {
     const double m = node.sum[n][0];
     const std::size_t k = node_of(f, a) + static_cast<std::size_t>(n);
@@ -197,13 +205,13 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::touch_boundaries(int f, std::s
     const std::array<double, Dim> pushed = v;
     if (contact && contact[n].count > 0) {
       NodeGrip& grip = grip_[k];
-      grip = stop_approach<Dim>(contact[n], m, std::max(0.0, gap[n].value) / dt, v);
+      if (!settled[n]) grip = stop_approach<Dim>(contact[n], m, std::max(0.0, (*gap)[n].value) / dt, v);
       const double share = smoothing_share(dt * h1_ * fastest_wave_, dt * h1_ * sliding_speed<Dim>(contact[n], v));
       smooth_grip(contact[n], m, dt, share, smoothed_grip_[k], grip);
       grip.carried = grip.friction;
       if (options_.soil_limits_friction)
         grip.carried = carried_by_soil(
-            gap[n], ground_.surfaces(a)[n] * share_inside<Dim>(wall_nodes_, grid_.node_index(a, n)), dt);
+            (*gap)[n], ground_.surfaces(a)[n] * share_inside<Dim>(wall_nodes_, grid_.node_index(a, n)), dt);
     }
     if (wall_nodes_.any) apply_walls<Dim>(wall_nodes_, grid_.node_index(a, n), m, v, sums);
     for (int d = 0; d < Dim; ++d) sums.impulse[d] += m * (v[d] - pushed[d]);

@@ -1,0 +1,103 @@
+#include "mpm_stage/boundary/contact_turns.hpp"
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+#include "mpm_stage/grid/shape_functions.hpp"
+
+using namespace tailrun::mpm;
+
+namespace {
+
+constexpr double h = 0.5, dt = 1e-3, friction = 0.4;
+const HalfSpaces<QuadraticShape> half;
+
+BodyAtNode<2> body_at(double x, double y, double mass, std::array<double, 2> v) {
+  BodyAtNode<2> body;
+  body.mass = mass;
+  body.v = body.before = v;
+  body.volume = 0.5 * h * h;
+  body.centre = {x * h, y * h};
+  body.strength = 1e4;
+  return body;
+}
+
+NodeContact level_ground() {
+  NodeContact contact;
+  contact.count = 1;
+  contact.point[0].normal = {0.0, 1.0};
+  contact.point[0].friction = friction;
+  return contact;
+}
+
+// Both bodies on the ground, with nothing but the push that the ground has given each.
+std::array<GroundPush<2>, 2> settle_two(const NodeContact& ground, BodyAtNode<2>& a, BodyAtNode<2>& b) {
+  std::array<BodyAtNode<2>, 2> body{a, b};
+  ContactPairs<2> pairs;
+  pairs.add(ContactPair<2>(body[0], body[1], {}, h, dt, half), 0, 1);
+  std::array<GroundPush<2>, 2> push{GroundPush<2>(ground, a.mass, 0.0), GroundPush<2>(ground, b.mass, 0.0)};
+  settle(pairs, body.data(), push.data(), 2);
+  a = body[0];
+  b = body[1];
+  return push;
+}
+
+double energy(const BodyAtNode<2>& b) {
+  return 0.5 * b.mass * (b.v[0] * b.v[0] + b.v[1] * b.v[1]);
+}
+
+}  // namespace
+
+TEST_CASE("bodies side by side that are pressed into the ground do not push each other aside, however they face") {
+  const NodeContact ground = level_ground();
+  for (const double rise : {-0.3, 0.0, 0.3}) {
+    auto firm = body_at(-0.3, 0.0, 2.0, {0.0, -1.0}), weak = body_at(0.3, rise, 0.1, {0.0, -8.0});
+    const auto push = settle_two(ground, firm, weak);
+    CHECK(firm.v == std::array<double, 2>{0.0, 0.0});
+    CHECK(weak.v == std::array<double, 2>{0.0, 0.0});
+    CHECK(push[0].grip().friction == doctest::Approx(friction * 2.0 * 1.0));
+    CHECK(push[1].grip().friction == doctest::Approx(friction * 0.1 * 8.0));
+  }
+}
+
+TEST_CASE("a body on top of another passes its push on to the ground") {
+  const NodeContact ground = level_ground();
+  auto below = body_at(0.0, -0.3, 1.0, {0.0, 0.0}), above = body_at(0.0, 0.3, 2.0, {0.5, -1.0});
+  // The ground does not reach the upper one, which the node's gap does not tell.
+  std::array<BodyAtNode<2>, 2> body{below, above};
+  ContactPairs<2> pairs;
+  pairs.add(ContactPair<2>(body[0], body[1], {}, h, dt, half), 0, 1);
+  std::array<GroundPush<2>, 2> push{GroundPush<2>(ground, 1.0, 0.0), GroundPush<2>(ground, 2.0, 1e9)};
+  settle(pairs, body.data(), push.data(), 2);
+  CHECK(body[0].v[1] == doctest::Approx(0.0).scale(1.0));
+  CHECK(body[1].v[1] == doctest::Approx(0.0).scale(1.0).epsilon(1e-4));
+  CHECK(body[1].v[0] == 0.5);
+  CHECK(push[0].grip().friction == doctest::Approx(friction * 2.0).epsilon(1e-4));
+  CHECK(!push[1].grip().pushed);
+}
+
+TEST_CASE("whatever meets on the ground: no energy is made, nothing goes into it, momentum comes from it alone") {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> some(-1.0, 1.0), mass(0.1, 10.0);
+  for (int k = 0; k < 1000; ++k) {
+    NodeContact ground = level_ground();
+    if (k % 3 == 0) {  // a valley's corner
+      ground.count = 2;
+      ground.point[1].normal = {0.6, 0.8};
+    }
+    auto a = body_at(-0.3 + 0.1 * some(random), 0.3 * some(random), mass(random), {some(random), some(random)});
+    auto b = body_at(0.3, 0.3 * some(random), mass(random), {some(random), some(random)});
+    const double start = energy(a) + energy(b);
+    std::array<double, 2> momentum;
+    for (int d = 0; d < 2; ++d) momentum[d] = a.mass * a.v[d] + b.mass * b.v[d];
+    const auto push = settle_two(ground, a, b);
+    CHECK(energy(a) + energy(b) <= start * (1.0 + 1e-14));
+    for (int d = 0; d < 2; ++d)
+      CHECK(a.mass * a.v[d] + b.mass * b.v[d] - push[0].impulse()[d] - push[1].impulse()[d] ==
+            doctest::Approx(momentum[d]).epsilon(1e-12));
+    for (int p = 0; p < ground.count; ++p)
+      for (const BodyAtNode<2>& body : {a, b})
+        CHECK(body.v[0] * ground.point[p].normal[0] + body.v[1] * ground.point[p].normal[1] > -0.02);
+  }
+}
