@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Pictures of the MPM stage: the hand-over, the additional displacement, the runout in stages, its front and its energy.
+"""Pictures of the MPM stage: the hand-over, the additional displacement, the runout in stages, its front, flow and energy.
 
     mpm_figures.py out/mochikoshi/mpm --case cases/mochikoshi -o out/mochikoshi/figures
 """
@@ -11,6 +11,7 @@ import numpy as np
 
 import chain_files as chain
 import field_plot as fields
+import flow_figures
 import runout_plot as runout
 import style
 from palette import Palette
@@ -140,6 +141,7 @@ def main():
     front = chain.series(arguments.folder / "front.csv")
     if front is not None:
         plot_front(plt, front, chain.summary(arguments.folder / "summary.json"), marks, arguments.output / "runout_front.png")
+    flow_figures.plot_all(plt, paths, view, marks, arguments.folder, arguments.output)
     ledger = chain.series(arguments.folder / "ledger.csv")
     if ledger is not None:
         plot_energy(plt, ledger, first.time, arguments.output / "energy.png")

@@ -41,14 +41,14 @@ STAGES = {
         Stage("import", "transfer_tool", "import", ("fem/snapshot.h5",), "fem/snapshot.h5"),
         Stage("transfer", "transfer_tool", "transfer", ("particles.h5",), "particles.h5", ("shake", "import")),
         Stage("mpm", "mpm_stage", "mpm", ("mpm/*.csv", "mpm/summary.json", "mpm/frames/*"), "mpm/.run", ("transfer",),
-              replaced=("mpm/frames",)),
+              replaced=("mpm/frames", "mpm/sections.csv", "mpm/bodies.csv")),
         Stage("consolidation", "fem_stage", "fem", ("consolidation/*",), "consolidation/.drained", ("shake",),
               replaced=("consolidation/*",)),
         Stage("fem-figures", "fem_figures.py", "", tuple(f"figures/{name}.png" for name in (
             "mesh", "velocity", "excess_pore_pressure_ratio", "displacement_fem", "fem_series", "fem_histories")),
             "figures/.fem", ("shake",)),
         Stage("mpm-figures", "mpm_figures.py", "", tuple(f"figures/{name}.png" for name in (
-            "handover", "displacement_mpm", "runout", "runout_front", "energy")), "figures/.mpm", ("mpm",)),
+            "handover", "displacement_mpm", "runout", "runout_front", "speed", "flow_depth", "sections", "energy")), "figures/.mpm", ("mpm",), replaced=("figures/sections.png", "figures/flow_depth.*")),
         Stage("film", "animate_runout.py", "", ("figures/runout.mp4", "figures/runout.gif"), "figures/.film", ("mpm",)),
         Stage("report", "report.py", "", ("figures/overview.png", "figures/report.html"), "figures/report.html",
               ("fem-figures", "mpm-figures", "film")),

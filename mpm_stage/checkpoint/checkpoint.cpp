@@ -125,6 +125,13 @@ void for_each_value(BodyRow& r, Action action) {
   for (double& x : r.values) action(x);
 }
 
+template <class Action>
+void for_each_value(SectionRow& r, Action action) {
+  action(r.time);
+  for (SectionState& s : r.of)
+    for (double* x : {&s.mass, &s.volume, &s.area, &s.discharge}) action(*x);
+}
+
 template <class Row>
 void write_rows(Hdf5Writer& file, const std::string& name, std::vector<Row> rows) {
   std::vector<double> values;
@@ -258,6 +265,7 @@ void write_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver, do
     file.write("/series/body_state", bodies, 2 * Dim, "m, N s", "displacement and impulse of each moving body");
     write_rows(file, "/series/bodies", std::move(run.bodies));
   }
+  if (!run.sections.empty()) write_rows(file, "/series/sections", std::move(run.sections));
   file.write_texts("/series/frame_names", run.frame_names, "frames written so far");
   file.write("/series/frame_times", run.frame_times, 0, "s", "their times");
   file.commit();
@@ -366,6 +374,11 @@ RunState read_checkpoint(const std::filesystem::path& path, Solver<Dim>& solver,
     BodyRow body_row;
     body_row.values.resize(2 * Dim * state.bodies.size());
     run.bodies = read_rows(file, "/series/bodies", body_row, false);
+  }
+  if (!scene.output.sections.empty()) {
+    SectionRow section_row;
+    section_row.of.resize(scene.output.sections.size());
+    run.sections = read_rows(file, "/series/sections", section_row, false);
   }
   run.frame_names = file.texts("/series/frame_names");
   run.frame_times = file.doubles("/series/frame_times", 0, 1);

@@ -10,6 +10,7 @@
 #include "mpm_stage/output/body_series.hpp"
 #include "mpm_stage/output/front.hpp"
 #include "mpm_stage/output/ledger.hpp"
+#include "mpm_stage/output/section_series.hpp"
 #include "mpm_stage/output/summary.hpp"
 #include "mpm_stage/step/solver.hpp"
 
@@ -27,6 +28,7 @@ struct RunState {
   double largest_kinetic = 0.0;  // J, of the ledger's rows
   std::vector<FrontRow> front;
   std::vector<BodyRow> bodies;
+  std::vector<SectionRow> sections;
 };
 
 // Throws ComputationError when the file cannot be written.

@@ -173,6 +173,7 @@ void check_series(const Hdf5Reader& file, const RunState& run, const Scene& scen
       if (!std::isfinite(x)) file.fail("/series/front", fmt::format("row {} has a value that is not finite", k));
   }
   if (!run.bodies.empty()) check_times(file, "/series/bodies", run.bodies, time);
+  if (!run.sections.empty()) check_times(file, "/series/sections", run.sections, time);
 }
 
 template void check_particles<2>(const Hdf5Reader&, const Particles<2>&, const Particles<2>&,

@@ -13,13 +13,10 @@ namespace tailrun::mpm {
 
 template <int Dim>
 FrontSeries<Dim>::FrontSeries(const Scene& scene)
-    : output_(scene.output), start_(scene.particles.position), cell_size_(scene.cell_size) {
-  bool any = false;
-  for (const auto& m : scene.materials) {
-    moving_.push_back(m.law->moves);
-    any = any || moving_.back();
-  }
-  if (!any) moving_.assign(moving_.size(), true);
+    : moving_(moving_materials(scene)),
+      output_(scene.output),
+      start_(scene.particles.position),
+      cell_size_(scene.cell_size) {
   const ParticleSet& set = scene.particles;
   const std::vector<double> before = positions_before(set);
   std::vector<bool> moves(set.count());

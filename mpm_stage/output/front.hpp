@@ -29,7 +29,6 @@ struct FrontRow {
   std::vector<double> points;             // m, x and y of the followed points
 };
 
-// Moving materials are all that are not linear elastic, unless everything is.
 template <int Dim>
 class FrontSeries {
  public:

@@ -7,6 +7,17 @@
 
 namespace tailrun::mpm {
 
+std::vector<bool> moving_materials(const Scene& scene) {
+  std::vector<bool> moving;
+  bool any = false;
+  for (const auto& m : scene.materials) {
+    moving.push_back(m.law->moves);
+    any = any || moving.back();
+  }
+  if (!any) moving.assign(moving.size(), true);
+  return moving;
+}
+
 std::vector<double> positions_before(const ParticleSet& set) {
   std::vector<double> before = set.position;
   if (!set.displacement.empty())

@@ -16,6 +16,9 @@
 
 namespace tailrun::mpm {
 
+// By material, whether it counts: all that are not linear elastic, unless everything is.
+std::vector<bool> moving_materials(const Scene& scene);
+
 // Positions before the motion began: of particles that carry a displacement, less that; (n, 3), m.
 std::vector<double> positions_before(const ParticleSet& set);
 

@@ -17,6 +17,7 @@
 #include "mpm_stage/output/frames.hpp"
 #include "mpm_stage/output/front.hpp"
 #include "mpm_stage/output/ledger.hpp"
+#include "mpm_stage/output/section_series.hpp"
 #include "mpm_stage/output/summary.hpp"
 #include "mpm_stage/run/schedule.hpp"
 #include "mpm_stage/step/solver.hpp"
@@ -66,7 +67,7 @@ std::vector<std::string> names_of(const std::vector<MovingBody<3>>& bodies) {
 }
 
 // One run with its solver and records. Everything that changes from step to step is in the solver, in `record_`, in the
-// schedules and in the three records, and all of that is in a checkpoint.
+// schedules and in the records, and all of that is in a checkpoint.
 template <int Dim>
 class Runout {
  public:
@@ -84,6 +85,7 @@ class Runout {
         ledger_(gravity_),
         front_(scene),
         bodies_(names_of(scene.walls.bodies)),
+        sections_(scene),
         frames_(folder / "frames", provenance) {}
 
   void run() {
@@ -107,11 +109,7 @@ class Runout {
     if (scene_.output.frame_interval > 0.0)
       frames_.write(particle_set<Dim>(scene_, solver_->particles(), record_.time));
     progress.finish(record_.stop_reason);
-    if (ledger_.rows().back().time < record_.time) {
-      ledger_.sample(record_.time, *solver_, scene_.energy_growth_limit);
-      front_.sample(record_.time, solver_->particles());
-      bodies_.sample(record_.time, solver_->bodies());
-    }
+    if (ledger_.rows().back().time < record_.time) sample();
     finish();
     std::filesystem::remove(checkpoint_);
     const FrontRow& f = front_.rows().back();
@@ -142,9 +140,7 @@ class Runout {
     solver_->start(until_next_event(0.0));
     record_.first_unbalanced = solver_->unbalanced_force_ratio(gravity_);
     warn_if_unbalanced();
-    ledger_.sample(0.0, *solver_, scene_.energy_growth_limit);
-    front_.sample(0.0, solver_->particles());
-    bodies_.sample(0.0, solver_->bodies());
+    sample();
     if (scene_.output.frame_interval > 0.0) frames_.write(particle_set<Dim>(scene_, solver_->particles(), 0.0));
     record_.setup_seconds = seconds_since(start_);
     spdlog::info(
@@ -185,6 +181,7 @@ class Runout {
     ledger_.restore(std::move(state.ledger), state.largest_kinetic);
     front_.restore(std::move(state.front));
     bodies_.restore(std::move(state.bodies));
+    sections_.restore(std::move(state.sections));
     frames_.restore(std::move(state.frame_names), std::move(state.frame_times));
     wall_seconds_before_ = record_.wall_seconds;
     spdlog::info("going on from {}: t = {:.6g} s, step {}", checkpoint_.string(), record_.time, record_.steps);
@@ -204,6 +201,7 @@ class Runout {
     state.largest_kinetic = ledger_.largest_kinetic();
     state.front = front_.rows();
     state.bodies = bodies_.rows();
+    state.sections = sections_.rows();
     write_checkpoint<Dim>(checkpoint_, *solver_, scene_.cell_size, std::move(state), provenance_);
     last_checkpoint_ = Clock::now();
   }
@@ -244,13 +242,21 @@ class Runout {
     watch_.looked(report, row, std::sqrt(g2 * row.mass), scene_.energy_growth_limit * ledger_.turnover());
   }
 
+  // A row of each series.
+  void sample() {
+    ledger_.sample(record_.time, *solver_, scene_.energy_growth_limit);
+    front_.sample(record_.time, solver_->particles());
+    bodies_.sample(record_.time, solver_->bodies());
+    sections_.sample(record_.time, solver_->particles());
+  }
+
   // Returns whether all has come to rest.
   bool record_event(const StepReport& report, bool series_due, bool frame_due, double shaking_end, Progress& progress) {
     const auto since = Clock::now();
     if (series_due) {
-      looked(ledger_.sample(record_.time, *solver_, scene_.energy_growth_limit), report);
-      const FrontRow& row = front_.sample(record_.time, solver_->particles());
-      bodies_.sample(record_.time, solver_->bodies());
+      sample();
+      looked(ledger_.rows().back(), report);
+      const FrontRow& row = front_.rows().back();
       progress.update(record_.time, record_.steps,
                       fmt::format("front {:.2f} m, {:.2f} m/s", row.robust_front, row.rms_speed));
     }
@@ -284,8 +290,10 @@ class Runout {
     front_.write(folder_ / "front.csv");
     ledger_.write(folder_ / "ledger.csv");
     bodies_.write(folder_ / "bodies.csv");
-    write_text_file((folder_ / "summary.json").string(),
-                    make_summary<Dim>(scene_, *solver_, record_, ledger_, front_).dump(2) + "\n");
+    sections_.write(folder_ / "sections.csv");
+    auto summary = make_summary<Dim>(scene_, *solver_, record_, ledger_, front_);
+    if (sections_.any()) summary["sections"] = sections_.summary();
+    write_text_file((folder_ / "summary.json").string(), summary.dump(2) + "\n");
   }
 
   const Clock::time_point start_ = Clock::now();
@@ -301,6 +309,7 @@ class Runout {
   EnergyWatch watch_;
   FrontSeries<Dim> front_;
   BodySeries<Dim> bodies_;
+  SectionSeries sections_;
   FrameWriter frames_;
   Clock::time_point last_checkpoint_ = start_;
   double wall_seconds_before_ = 0.0;

@@ -31,6 +31,12 @@ struct TrackedPoint {
   std::array<double, 2> position;  // m, at the start; the nearest particle of a moving material is followed
 };
 
+// A vertical section across the flow.
+struct FlowSection {
+  std::string name;
+  double at = 0.0;  // m, along the flow's axis
+};
+
 struct OutputOptions {
   double frame_interval = 1.0;    // s of simulated time; 0: no frames
   double series_interval = 0.05;  // s
@@ -42,6 +48,7 @@ struct OutputOptions {
   std::optional<double> toe;      // m, where the dam ended before the motion; unless given the outermost moving soil
   std::optional<std::array<double, 2>> footprint;  // m, of the dam along the flow; unless given from crest to toe
   std::vector<TrackedPoint> points;
+  std::vector<FlowSection> sections;
 };
 
 struct BaseMotion {

@@ -152,6 +152,15 @@ void read_output(const CaseNode& root, Scene& scene) {
     const auto x = point.numbers("position", "m", Range::any(), 2);
     o.points.push_back({point.text("name"), {x[0], x[1]}});
   }
+  for (const CaseNode& section : node.list_or_empty("sections")) {
+    const std::string name = section.text("name");
+    const char* allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    if (name.empty() || name.find_first_not_of(allowed) != std::string::npos)
+      section.fail("name", fmt::format("'{}' becomes part of a column's name: letters, digits, _ and - only", name));
+    for (const FlowSection& other : o.sections)
+      if (other.name == name) section.fail("name", fmt::format("there is a section '{}' already", name));
+    o.sections.push_back({name, section.number("at", "m", Range::any())});
+  }
 }
 
 void read_base_motion(const CaseNode& root, Scene& scene) {

@@ -33,7 +33,7 @@ const char* const case_text = R"({
   "particles": [
     {"shape": "box", "low": [0, 0], "high": [2, 1], "material": "clay", "velocity": [3, 0]},
     {"shape": "box", "low": [0, 1], "high": [2, 2], "material": "sand", "velocity": [3, 0]}],
-  "output": {"frame_interval": 0.2, "series_interval": 0.02}
+  "output": {"frame_interval": 0.2, "series_interval": 0.02, "sections": [{"name": "drop", "at": 2.5}]}
 })";
 
 class Folder {
@@ -98,6 +98,8 @@ TEST_CASE("a run that was interrupted twice and went on leaves the same bytes as
   REQUIRE(std::count(front.begin(), front.end(), '\n') > 20);
   CHECK(front == text_of(folder / "parts/front.csv"));
   CHECK(ledger == text_of(folder / "parts/ledger.csv"));
+  CHECK(text_of(folder / "whole/sections.csv") == text_of(folder / "parts/sections.csv"));
+  CHECK(text_of(folder / "parts/sections.csv").starts_with("time_s,drop_discharge_m2_s,drop_depth_m,"));
   CHECK(text_of(folder / "whole/frames/runout.vtkhdf.series") == text_of(folder / "parts/frames/runout.vtkhdf.series"));
   for (const char* frame : {"frames/runout_00001.vtkhdf", "frames/runout_00003.vtkhdf"}) {
     CAPTURE(frame);

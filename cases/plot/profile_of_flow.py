@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 
-import paths  # noqa: F401
 import chain_files as chain
 
 FLOW_DISTANCE = 1.0  # m; mpm.json's output/flow_distance when it says nothing
