@@ -93,6 +93,8 @@ def collect(results, phase):
             ("MPM", "particles", str(mpm.get("particles", "-")), ""),
             ("MPM", "time simulated", show(mpm.get("simulated_time_s"), 1), "s"),
             ("MPM", "ended", mpm.get("stop_reason", "-"), ""),
+            ("MPM", "root mean square speed then", show(mpm.get("final_rms_speed_m_s"), 3), "m/s"),
+            ("MPM", "speed of the front then", show(mpm.get("final_front_speed_m_s"), 3), "m/s"),
             ("MPM", "front of all soil, x", show(mpm.get("robust_front_position_m"), 1), "m"),
             ("MPM", "front of what flowed, x", show(mpm.get("flow_front_position_m"), 1), "m"),
             ("MPM", "mass that flowed, per m of dam", show(mpm.get("flowed_mass_kg", 0.0) / 1e3, 0), "t"),

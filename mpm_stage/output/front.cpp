@@ -125,6 +125,17 @@ bool FrontSeries<Dim>::at_rest(const RestCriterion& rest) const {
 }
 
 template <int Dim>
+double FrontSeries<Dim>::front_speed(double duration) const {
+  for (auto row = rows_.rbegin(); row != rows_.rend(); ++row) {
+    const double since = rows_.back().time - row->time;
+    if (since < duration * (1.0 - 1e-9)) continue;
+    const double way = output_.front_sign * (rows_.back().flow_front - row->flow_front);
+    return std::isfinite(way) ? way / since : 0.0;
+  }
+  return 0.0;
+}
+
+template <int Dim>
 void FrontSeries<Dim>::write(const std::filesystem::path& path) const {
   std::string text =
       "time_s,front_m,robust_front_m,top_m,centre_x_m,centre_y_m,rms_speed_m_s,maximum_speed_m_s,flow_front_m,flowed_"

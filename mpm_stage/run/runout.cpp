@@ -118,11 +118,17 @@ class Runout {
             ? fmt::format("{:.4g} t moved by more than {:g} m, runout {:.2f} m from the toe at {:.2f} m",
                           f.flowed_mass / 1e3, scene_.output.flow_distance, front_.runout(f.flow_front), front_.toe())
             : fmt::format("nothing moved by more than {:g} m", scene_.output.flow_distance);
+    // What a reader has to know before the runout: whether it is one.
+    const bool moves = record_.stop_reason == "end time" && f.rms_speed > scene_.rest.speed;
+    const std::string motion =
+        moves ? fmt::format(", soil still in motion (root mean square {:.2g} m/s, the flow's front {:.2g} m/s)",
+                            f.rms_speed, front_.front_speed(scene_.rest.duration))
+              : "";
     const double turnover = std::max(ledger_.turnover(), 1e-300);
     fmt::print(
-        "{}: {} after {:.3f} s, {} steps; {}; of {:.4g} J turned over the scheme lost "
+        "{}: {} after {:.3f} s{}, {} steps; {}; of {:.4g} J turned over the scheme lost "
         "{:.1f} %, residual {:.2f} %\n",
-        scene_.title, record_.stop_reason, record_.time, record_.steps, flow, ledger_.turnover(),
+        scene_.title, record_.stop_reason, record_.time, motion, record_.steps, flow, ledger_.turnover(),
         100.0 * ledger_.rows().back().lost / turnover, 100.0 * ledger_.rows().back().residual / turnover);
   }
 
