@@ -13,6 +13,7 @@ SectionSeries::SectionSeries(const Scene& scene)
     : sections_(scene.output.sections),
       moving_(moving_materials(scene)),
       start_(sections_.empty() ? std::vector<double>{} : scene.particles.position),
+      start_volume_(sections_.empty() ? std::vector<double>{} : scene.particles.volume),
       behind_mass_(sections_.size(), 0.0),
       behind_volume_(sections_.size(), 0.0),
       dimension_(scene.dimension),
@@ -48,7 +49,7 @@ void SectionSeries::sample(double time, const Particles<Dim>& P) {
       const double ahead = sign_ * (P.position[axis_][p] - sections_[s].at);
       if (ahead < 0.0) {
         state.mass -= P.mass[p];
-        state.volume -= P.volume[p];
+        state.volume -= start_volume_[static_cast<std::size_t>(P.identity[p])];
       }
       if (std::fabs(ahead) > cell_) continue;
       double moved2 = 0.0;

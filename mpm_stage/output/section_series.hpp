@@ -4,7 +4,8 @@
 // a cell on either side of it, width B = 2 h:
 //   discharge  Q = sum V_p v_p / B, v_p the speed in the flow's direction, over soil in the band that has flowed
 //   area       A = sum V_p / B, over the same: the flow's depth in plane strain
-//   passed     mass and volume that were behind the section at the start less those that are there now
+//   passed     mass that was behind the section at the start less that which is there now, and its volume as at the
+//              start: soil that swells behind the section passes nothing
 #pragma once
 
 #include <filesystem>
@@ -43,7 +44,7 @@ class SectionSeries {
  private:
   std::vector<FlowSection> sections_;
   std::vector<bool> moving_;                         // by material
-  std::vector<double> start_;                        // m, positions at the start, (n, 3)
+  std::vector<double> start_, start_volume_;         // m, (n, 3), and m3: of the particles, by identity
   std::vector<double> behind_mass_, behind_volume_;  // kg, m3: behind each section at the start
   int dimension_, axis_;
   double sign_, cell_, flow_distance_;

@@ -65,6 +65,15 @@ TEST_CASE("a layer that moves past a section: depth, discharge and what has pass
   }
 }
 
+TEST_CASE("soil that swells where it is passes no section") {
+  const Scene scene = layer(1.0);
+  SectionSeries sections(scene);
+  Particles<2> P = moved(scene, 0.0);
+  for (double& volume : P.volume) volume *= 1.1;
+  sections.sample(0.0, P);
+  CHECK(sections.rows().back().of[0].volume == doctest::Approx(0.0));
+}
+
 TEST_CASE("soil that has not flowed yet is no flow, and a section without soil has neither depth nor speed") {
   const Scene scene = layer(1.0);
   SectionSeries sections(scene);
