@@ -240,6 +240,13 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
     setting.water_density = out.fluid_density;
     setting.has_water = !out.phreatic_line.empty();
     check_material(node, setting);
+    if (const auto strength = node.object_if("residual_strength")) {
+      const std::string_view model = model_name(out.materials.back());
+      if (model != "pm4sand" && model != "pm4silt")
+        node.fail("residual_strength",
+                  fmt::format("is for soil that liquefies, model pm4sand or pm4silt; '{}' is {}", name, model));
+      out.residual_strength.emplace(static_cast<int>(out.materials.size()) - 1, read_liquefied_strength(*strength));
+    }
   }
   for (const auto& [name, node] : root.object("regions").members()) {
     RegionOptions region;

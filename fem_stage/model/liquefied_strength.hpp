@@ -1,0 +1,22 @@
+// "residual_strength" of a material in fem.json: the strength that its soil keeps once it has liquefied, by the
+// relations of the hand-over, and when it counts as liquefied. The floor itself: material/residual_floor.hpp.
+#pragma once
+
+#include <limits>
+
+#include "common/residual_strength/strength_law.hpp"
+
+namespace tailrun::fem {
+
+struct LiquefiedStrength {
+  StrengthLaw law;
+  // Liquefied for good once either is passed; infinity: never by that.
+  double pore_pressure_ratio = 0.7;                               // r_u
+  double shear_strain = std::numeric_limits<double>::infinity();  // engineering, in the plane
+  double mobilisation_strain = 0.05;  // engineering shear strain at which the floor by itself carries all of s_R
+};
+
+// The keys of read_strength_law, "mobilisation_strain" and "trigger". Throws InputError.
+LiquefiedStrength read_liquefied_strength(const CaseNode& node);
+
+}  // namespace tailrun::fem
