@@ -121,6 +121,7 @@ struct FemCase {
   bool averaged_mass = false;  // half lumped, half consistent
   std::vector<MaterialDefinition> materials;
   std::map<int, LiquefiedStrength> residual_strength;  // by index into materials: those that have one
+  std::map<int, Softening> softening;                  // likewise, with a reference height
   std::map<std::string, RegionOptions> regions;
   BoundaryOptions boundaries;
   std::vector<LoadOptions> loads;

@@ -20,4 +20,11 @@ LiquefiedStrength read_liquefied_strength(const CaseNode& node) {
   return out;
 }
 
+Softening read_softening(const CaseNode& node) {
+  Softening out;
+  out.reference_height = node.number_or("reference_height", "m", Range::non_negative(), out.reference_height);
+  out.from_shear_strain = node.number_or("from_shear_strain", "1", Range::positive(), out.from_shear_strain);
+  return out;
+}
+
 }  // namespace tailrun::fem

@@ -128,6 +128,9 @@ void write_state(const std::filesystem::path& path, const Model& model, const St
       file.write(restart + "/liquefied", std::span<const double>(state.liquefied), 0, "1",
                  "1 where the soil has liquefied and its residual strength is a floor");
     }
+    if (!state.softening.empty())
+      file.write(restart + "/softening", std::span<const double>(state.softening), 0, "1",
+                 "1 where softening is scaled by the element's height");
     if (rigid_velocity != 0.0 || rigid_acceleration != 0.0 || rigid_displacement != 0.0) {
       const double rigid[3] = {rigid_displacement, rigid_velocity, rigid_acceleration};
       file.write(restart + "/rigid_base_motion", std::span<const double>(rigid), 0, "1",
@@ -181,6 +184,8 @@ void read_state(const std::filesystem::path& path, const Model& model, State& st
     state.floor_stress = file.doubles(restart + "/floor_stress", count, 2);
     state.liquefied = file.doubles(restart + "/liquefied", count, 1);
   }
+  state.softening.clear();
+  if (file.has(restart + "/softening")) state.softening = file.doubles(restart + "/softening", count, 1);
   state.rigid_displacement = 0.0;
   if (file.has(restart + "/rigid_base_motion")) {
     const auto rigid = file.doubles(restart + "/rigid_base_motion", 3, 1);

@@ -46,6 +46,8 @@ ElementForces::ElementForces(const Model& model, double damping, bool large_disp
 
 void ElementForces::take_moduli(const MaterialPoints& points) {
   points.elastic_moduli(bulk_, shear_);
+  if (softening_scale_)
+    for (std::size_t e = 0; e < model_.count(); ++e) shear_[e] *= softening_scale_->factor(e);
   if (!residual_floor_) return;
   for (std::size_t e = 0; e < model_.count(); ++e) shear_[e] += residual_floor_->shear(e);
 }
@@ -83,7 +85,7 @@ UpdateReport ElementForces::evaluate(MaterialPoints& points, std::span<const dou
 
   const auto start = std::chrono::steady_clock::now();
   const std::vector<double>& strain = large_ ? material_strain_ : strain_;
-  UpdateReport report = points.update(strain, stress_);
+  UpdateReport report = points.update(softening_scale_ ? softening_scale_->driving_strain(strain) : strain, stress_);
   if (residual_floor_) residual_floor_->update(strain, stress_);
   material_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "fem_stage/material/residual_floor.hpp"
+#include "fem_stage/material/softening_scale.hpp"
 #include "fem_stage/model/model.hpp"
 
 namespace tailrun::fem {
@@ -34,6 +35,8 @@ class ElementForces {
   void reset(const MaterialPoints& points, const State& state);  // takes over a state's hourglass forces and moduli
   // Liquefied soil's residual strength, one point per element, beside the materials from now on. Before reset().
   void set_residual_floor(ResidualFloor floor) { residual_floor_ = std::move(floor); }
+  void set_softening_scale(SofteningScale scale) { softening_scale_ = std::move(scale); }
+  SofteningScale* softening_scale() { return softening_scale_ ? &*softening_scale_ : nullptr; }
   ResidualFloor* residual_floor() { return residual_floor_ ? &*residual_floor_ : nullptr; }
 
   // Element matrix of the Newmark system, 12 x 12, symmetric, pressure freedoms scaled by `scale` (Pa/m):
@@ -62,6 +65,7 @@ class ElementForces {
   bool large_;
   SspQuadUp moved_;
   std::optional<ResidualFloor> residual_floor_;
+  std::optional<SofteningScale> softening_scale_;
   std::vector<double> bulk_, shear_;  // of the last commit
   std::vector<double> last_shear_;    // of the one before, where hourglass forces follow it
   std::vector<double> hourglass_committed_, hourglass_trial_, hourglass_mode_;  // N, N, m: (M, 2)

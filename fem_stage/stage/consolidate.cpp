@@ -59,6 +59,7 @@ ConsolidationReport run_consolidation(const Model& model, MaterialPoints& points
   const Freedoms freedoms = consolidation_freedoms(model);
   ElementForces forces(model, 0.0, model.options->shake.large_displacement);
   if (auto floor = make_residual_floor(model, state)) forces.set_residual_floor(std::move(*floor));
+  if (auto scale = make_softening_scale(model, state)) forces.set_softening_scale(std::move(*scale));
   forces.reset(points, state);
   NewmarkOptions newmark_options;
   newmark_options.gamma = newmark_options.beta = newmark_options.theta = 1.0;  // from rest: backward Euler

@@ -19,6 +19,21 @@ std::vector<int> materials_of_regions(const Model& model) {
   return materials;
 }
 
+// m: the thickness of a band one element wide along the element's longer side, which is the lesser distance between the
+// middles of opposite sides.
+double height_of(const Mesh& mesh, std::size_t e) {
+  const auto distance = [&](std::size_t a) {  // from the side a, a + 1 to the one across
+    double across[2] = {0.0, 0.0};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto node = static_cast<std::size_t>(mesh.quads[4 * e + (a + k) % 4]);
+      across[0] += (k < 2 ? 0.5 : -0.5) * mesh.x(node);
+      across[1] += (k < 2 ? 0.5 : -0.5) * mesh.y(node);
+    }
+    return std::hypot(across[0], across[1]);
+  };
+  return std::min(distance(0), distance(1));
+}
+
 }  // namespace
 
 std::optional<ResidualFloor> make_residual_floor(const Model& model, const State& state) {
@@ -63,6 +78,36 @@ void observe_liquefaction(const Model& model, State& state, ResidualFloor& floor
   }
   state.liquefied.assign(floor.active().begin(), floor.active().end());
   state.floor_stress.assign(floor.stress().begin(), floor.stress().end());
+}
+
+std::optional<SofteningScale> make_softening_scale(const Model& model, const State& state) {
+  const auto& chosen = model.options->softening;
+  if (chosen.empty()) {
+    for (const double active : state.softening)
+      if (active != 0.0)
+        throw InputError(
+            "the state's soil softens by the height of its elements, but no material of the case has a reference "
+            "height; go on with the /materials/.../softening that it was made with");
+    return {};
+  }
+  std::vector<double> scale(model.count(), 1.0);
+  const std::vector<int> material = materials_of_regions(model);
+  for (std::size_t e = 0; e < model.count(); ++e)
+    if (const auto found = chosen.find(material[static_cast<std::size_t>(model.mesh.region[e])]); found != chosen.end())
+      scale[e] = height_of(model.mesh, e) / found->second.reference_height;
+  SofteningScale out(std::move(scale));
+  if (!state.softening.empty()) out.restore(state.softening);
+  return out;
+}
+
+void observe_softening(const Model& model, State& state, SofteningScale& scale) {
+  const auto strain = shear_strain(model, state);
+  const std::vector<int> material = materials_of_regions(model);
+  for (std::size_t e = 0; e < model.count(); ++e) {
+    const auto found = model.options->softening.find(material[static_cast<std::size_t>(model.mesh.region[e])]);
+    if (found != model.options->softening.end() && strain[e] > found->second.from_shear_strain) scale.activate(e);
+  }
+  state.softening.assign(scale.active().begin(), scale.active().end());
 }
 
 nlohmann::ordered_json liquefaction_summary(const Model& model, const ResidualFloor& floor) {

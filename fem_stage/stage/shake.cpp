@@ -162,7 +162,12 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
                              : 0.0;
   ElementForces forces(model, damping, options.large_displacement);
   if (auto floor = make_residual_floor(model, state)) forces.set_residual_floor(std::move(*floor));
-  if (forces.residual_floor()) observe_liquefaction(model, state, *forces.residual_floor());
+  if (auto scale = make_softening_scale(model, state)) forces.set_softening_scale(std::move(*scale));
+  const auto observe_soil = [&] {
+    if (forces.residual_floor()) observe_liquefaction(model, state, *forces.residual_floor());
+    if (forces.softening_scale()) observe_softening(model, state, *forces.softening_scale());
+  };
+  observe_soil();
   forces.reset(points, state);
   for (std::size_t i = 0; i < 2 * model.nodes(); ++i)  // what a restart brings along
     report.ledger.external_work += 0.5 * model.nodal_mass[i / 2] * state.velocity[i] * state.velocity[i];
@@ -241,7 +246,7 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
     const auto ratio = excess_pore_pressure_ratio(model, state);
     for (std::size_t e = 0; e < model.count(); ++e)
       state.max_pore_pressure_ratio[e] = std::max(state.max_pore_pressure_ratio[e], ratio[e]);
-    if (forces.residual_floor()) observe_liquefaction(model, state, *forces.residual_floor());
+    observe_soil();
     write_outputs();
     if (!quality.rows().empty())
       progress.update(state.time, step,
