@@ -139,6 +139,22 @@ TEST_CASE("residual strength: a state file goes on") {
   CHECK_THROWS_AS(make_residual_floor(later.model, later.state), InputError);
 }
 
+TEST_CASE("softening: nothing changes up to its strain; past it a run goes on from its file and needs its key") {
+  const std::string never = R"(, "softening": { "reference_height": 2, "from_shear_strain": 100 })",
+                    soon = R"(, "softening": { "reference_height": 2 })";
+  Column off(""), late(never), on(soon), resumed(soon);
+  off.shake();
+  late.shake();
+  const ShakeReport report = on.shake();
+  CHECK(late.state.displacement == off.state.displacement);
+  CHECK(on.state.displacement != off.state.displacement);
+  read_state(on.folder / "out" / report.snapshots.front(), resumed.model, resumed.state, resumed.points);
+  resumed.shake();
+  CHECK(resumed.largest_strain() == doctest::Approx(on.largest_strain()).epsilon(0.01));
+  resumed.options.softening.clear();
+  CHECK_THROWS_AS(make_softening_scale(resumed.model, resumed.state), InputError);
+}
+
 TEST_CASE("residual strength: a case file's mistakes are said with the nearest key") {
   const auto message = [](const std::string& text) -> std::string {
     try {
@@ -154,5 +170,6 @@ TEST_CASE("residual strength: a case file's mistakes are said with the nearest k
   CHECK(message(constant + R"(, "trigger": { "excess_pore_pressure": 0.7 } })").find("excess_pore_pressure_ratio") !=
         std::string::npos);
   CHECK(message(R"(, "residual_strength": { "model": "webber", "blow_count": 6 })").find("weber") != std::string::npos);
+  CHECK(message(R"(, "softening": { "height": 1.5 })").find("/materials/soil/softening/height") != std::string::npos);
   CHECK(message(R"(, "residual_strength": { "model": "weber" })").find("blow_count") != std::string::npos);
 }
