@@ -3,8 +3,9 @@
 // Where strain gathers in a band one element wide, strength is then a function of the slip across the band and not of
 // slip over h, on every mesh. Mean strain, hence contraction under pressure and the water's volume, is not scaled.
 //
-// Stress stays a function of the strain's history through the same model, so that a closed loop of strain does
-// h_ref/h times the work of the model's own loop: dissipation stays dissipation. Moduli are scaled with it.
+// Stress stays a function of the strain's history through the same model, so that a closed loop of shear without change
+// of volume, as liquefied soil does within seconds, takes h_ref/h times the work of the model's own loop: dissipation
+// stays dissipation. The elastic shear modulus is scaled with it.
 #pragma once
 
 #include <span>

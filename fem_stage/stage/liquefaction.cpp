@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "common/error.hpp"
 #include "common/residual_strength/strength_tally.hpp"
@@ -50,7 +52,14 @@ std::optional<ResidualFloor> make_residual_floor(const Model& model, const State
   const std::vector<int> material = materials_of_regions(model);
   for (std::size_t e = 0; e < model.count(); ++e) {
     const auto found = chosen.find(material[static_cast<std::size_t>(model.mesh.region[e])]);
-    if (found == chosen.end()) continue;
+    if (found == chosen.end()) {
+      if (!state.liquefied.empty() && state.liquefied[e] != 0.0)
+        throw InputError(fmt::format(
+            "the state's stresses contain the floor of a residual strength in region '{}', whose material has none; go "
+            "on with the /materials/.../residual_strength that it was made with",
+            model.mesh.region_names[static_cast<std::size_t>(model.mesh.region[e])]));
+      continue;
+    }
     const double sigma_v0 = std::max(0.0, -state.initial_stress[4 * e + 1]);
     const Strength s_R = found->second.law(sigma_v0);
     strength[e] = s_R.value;
