@@ -13,8 +13,8 @@
 // is not touched: it sees the same strains and forgets nothing.
 //
 // Why: deformation analyses of dams give liquefied soil the residual strength of case histories (Boulanger, Montgomery
-// & Ziotopoulou 2015), mobilised with a stiffness of s_R over a strain (Beaty & Byrne 2008), as PM4Sand's own plateau
-// at large strain is no measured quantity.
+// & Ziotopoulou 2015), as PM4Sand's own plateau at large strain is no measured quantity. A stiffness of s_R over a
+// strain, far below PM4Sand's own, is our choice: it leaves the small cycles of liquefied soil to the model.
 #pragma once
 
 #include <span>
