@@ -240,6 +240,21 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
     setting.water_density = out.fluid_density;
     setting.has_water = !out.phreatic_line.empty();
     check_material(node, setting);
+    const auto require_pm4 = [&](const char* key) {
+      const std::string_view model = model_name(out.materials.back());
+      if (model != "pm4sand" && model != "pm4silt")
+        node.fail(key, fmt::format("is for soil that liquefies, model pm4sand or pm4silt; '{}' is {}", name, model));
+    };
+    const int index = static_cast<int>(out.materials.size()) - 1;
+    if (const auto strength = node.object_if("residual_strength")) {
+      require_pm4("residual_strength");
+      out.residual_strength.emplace(index, read_liquefied_strength(*strength));
+    }
+    if (const auto softening = node.object_if("softening")) {
+      require_pm4("softening");
+      if (const Softening given = read_softening(*softening); given.reference_height > 0.0)
+        out.softening.emplace(index, given);
+    }
   }
   for (const auto& [name, node] : root.object("regions").members()) {
     RegionOptions region;

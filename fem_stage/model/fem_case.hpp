@@ -13,6 +13,7 @@
 #include "fem_stage/material/material_points.hpp"
 #include "fem_stage/mesh/rectangle_mesh.hpp"
 #include "fem_stage/model/boundary_options.hpp"
+#include "fem_stage/model/liquefied_strength.hpp"
 
 namespace tailrun::fem {
 
@@ -119,6 +120,8 @@ struct FemCase {
   bool hourglass_current_modulus = false;
   bool averaged_mass = false;  // half lumped, half consistent
   std::vector<MaterialDefinition> materials;
+  std::map<int, LiquefiedStrength> residual_strength;  // by index into materials: those that have one
+  std::map<int, Softening> softening;                  // likewise, with a reference height
   std::map<std::string, RegionOptions> regions;
   BoundaryOptions boundaries;
   std::vector<LoadOptions> loads;

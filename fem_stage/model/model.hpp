@@ -67,7 +67,11 @@ struct State {
   // Only with large displacement, and only once it has begun: what a restart needs.
   std::vector<double> rotation;                // rad, (M): of the frames that the material's stress lives in
   std::vector<double> turned_hourglass_force;  // N, (M, 2): hourglass forces turned with the element
-  double rigid_displacement = 0.0;             // m, along x: of a rigid base since the start of shaking
+  // Only where the case has a residual strength, and only once shaking has begun: its floor, see residual_floor.hpp.
+  std::vector<double> floor_stress;  // Pa, (M, 2), in the frame that the material's stress lives in
+  std::vector<double> liquefied;     // 1, (M): 1 for good once the element has liquefied
+  std::vector<double> softening;     // 1, (M): 1 for good where softening is scaled, see softening_scale.hpp; likewise
+  double rigid_displacement = 0.0;   // m, along x: of a rigid base since the start of shaking
 };
 
 // Reads or makes the mesh and everything that depends on it. `mesh_file` overrides the case's. Throws InputError:

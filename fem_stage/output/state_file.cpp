@@ -120,6 +120,17 @@ void write_state(const std::filesystem::path& path, const Model& model, const St
       file.write(restart + "/turned_hourglass_force", std::span<const double>(state.turned_hourglass_force), 2, "N",
                  "committed hourglass forces, turned with the element");
     }
+    if (!state.floor_stress.empty()) {
+      file.write(
+          restart + "/floor_stress", std::span<const double>(state.floor_stress), 2, "Pa",
+          "(xx - yy)/2 and xy of what the residual strength's floor carries, part of the effective stress, in the "
+          "frame that the material's stress lives in");
+      file.write(restart + "/liquefied", std::span<const double>(state.liquefied), 0, "1",
+                 "1 where the soil has liquefied and its residual strength is a floor");
+    }
+    if (!state.softening.empty())
+      file.write(restart + "/softening", std::span<const double>(state.softening), 0, "1",
+                 "1 where softening is scaled by the element's height");
     if (rigid_velocity != 0.0 || rigid_acceleration != 0.0 || rigid_displacement != 0.0) {
       const double rigid[3] = {rigid_displacement, rigid_velocity, rigid_acceleration};
       file.write(restart + "/rigid_base_motion", std::span<const double>(rigid), 0, "1",
@@ -167,6 +178,14 @@ void read_state(const std::filesystem::path& path, const Model& model, State& st
     state.rotation = file.doubles(restart + "/rotation", count, 1);
     state.turned_hourglass_force = file.doubles(restart + "/turned_hourglass_force", count, 2);
   }
+  state.floor_stress.clear();
+  state.liquefied.clear();
+  if (file.has(restart + "/floor_stress")) {
+    state.floor_stress = file.doubles(restart + "/floor_stress", count, 2);
+    state.liquefied = file.doubles(restart + "/liquefied", count, 1);
+  }
+  state.softening.clear();
+  if (file.has(restart + "/softening")) state.softening = file.doubles(restart + "/softening", count, 1);
   state.rigid_displacement = 0.0;
   if (file.has(restart + "/rigid_base_motion")) {
     const auto rigid = file.doubles(restart + "/rigid_base_motion", 3, 1);

@@ -44,6 +44,14 @@ ElementForces::ElementForces(const Model& model, double damping, bool large_disp
   }
 }
 
+void ElementForces::take_moduli(const MaterialPoints& points) {
+  points.elastic_moduli(bulk_, shear_);
+  if (softening_scale_)
+    for (std::size_t e = 0; e < model_.count(); ++e) shear_[e] *= softening_scale_->factor(e);
+  if (!residual_floor_) return;
+  for (std::size_t e = 0; e < model_.count(); ++e) shear_[e] += residual_floor_->shear(e);
+}
+
 double ElementForces::hourglass_modulus(std::size_t e) const {
   return model_.options->hourglass_current_modulus ? shear_[e] : model_.shear_initial[e];
 }
@@ -76,7 +84,9 @@ UpdateReport ElementForces::evaluate(MaterialPoints& points, std::span<const dou
   }
 
   const auto start = std::chrono::steady_clock::now();
-  UpdateReport report = points.update(large_ ? material_strain_ : strain_, stress_);
+  const std::vector<double>& strain = large_ ? material_strain_ : strain_;
+  UpdateReport report = points.update(softening_scale_ ? softening_scale_->driving_strain(strain) : strain, stress_);
+  if (residual_floor_) residual_floor_->update(strain, stress_);
   material_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
   const double fluid_density = model_.options->fluid_density, gravity = model_.options->gravity;
@@ -160,8 +170,12 @@ void ElementForces::commit(MaterialPoints& points, State& state, std::span<const
   for (std::size_t i = 0; i < hourglass_mode_.size(); ++i)
     hourglass_work_[i / 2] += 0.5 * (hourglass_committed_[i] + hourglass_trial_[i]) * hourglass_mode_[i];
   points.commit();
+  if (residual_floor_) {
+    residual_floor_->commit();
+    state.floor_stress.assign(residual_floor_->stress().begin(), residual_floor_->stress().end());
+  }
   if (model_.options->hourglass_current_modulus) last_shear_ = shear_;
-  points.elastic_moduli(bulk_, shear_);
+  take_moduli(points);
   if (model_.options->hourglass_current_modulus) {
     // A spring that softens lets go of its force; one that hardens keeps it. Neither makes energy.
     for (std::size_t i = 0; i < hourglass_trial_.size(); ++i)
@@ -187,7 +201,7 @@ void ElementForces::commit(MaterialPoints& points, State& state, std::span<const
 }
 
 void ElementForces::reset(const MaterialPoints& points, const State& state) {
-  points.elastic_moduli(bulk_, shear_);
+  take_moduli(points);
   hourglass_committed_ = state.hourglass_force;
   soft_fluid_mobility(model_, state.pressure, mobility_);
   if (!large_) return;

@@ -7,10 +7,13 @@
 // that the sums are the same for any number of threads.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "fem_stage/material/residual_floor.hpp"
+#include "fem_stage/material/softening_scale.hpp"
 #include "fem_stage/model/model.hpp"
 
 namespace tailrun::fem {
@@ -30,6 +33,11 @@ class ElementForces {
   // Accepts the last evaluation: hourglass forces, moduli for tangent and damping, geometry when it moves.
   void commit(MaterialPoints& points, State& state, std::span<const double> increment);
   void reset(const MaterialPoints& points, const State& state);  // takes over a state's hourglass forces and moduli
+  // Liquefied soil's residual strength, one point per element, beside the materials from now on. Before reset().
+  void set_residual_floor(ResidualFloor floor) { residual_floor_ = std::move(floor); }
+  void set_softening_scale(SofteningScale scale) { softening_scale_ = std::move(scale); }
+  SofteningScale* softening_scale() { return softening_scale_ ? &*softening_scale_ : nullptr; }
+  ResidualFloor* residual_floor() { return residual_floor_ ? &*residual_floor_ : nullptr; }
 
   // Element matrix of the Newmark system, 12 x 12, symmetric, pressure freedoms scaled by `scale` (Pa/m):
   //   [ mass_factor M + stiffness_factor K,  -Q ; -Q^T,  -(storage_factor (S + S_alpha) + flow_factor H) ]
@@ -48,6 +56,7 @@ class ElementForces {
   double material_seconds() const { return material_seconds_; }
 
  private:
+  void take_moduli(const MaterialPoints& points);
   double hourglass_modulus(std::size_t e) const;
   double turn_since(std::size_t e, std::span<const double> displacement, std::span<const double> increment) const;
 
@@ -55,6 +64,8 @@ class ElementForces {
   double damping_;
   bool large_;
   SspQuadUp moved_;
+  std::optional<ResidualFloor> residual_floor_;
+  std::optional<SofteningScale> softening_scale_;
   std::vector<double> bulk_, shear_;  // of the last commit
   std::vector<double> last_shear_;    // of the one before, where hourglass forces follow it
   std::vector<double> hourglass_committed_, hourglass_trial_, hourglass_mode_;  // N, N, m: (M, 2)

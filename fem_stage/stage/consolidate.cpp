@@ -14,6 +14,7 @@
 #include "fem_stage/output/history.hpp"
 #include "fem_stage/output/snapshot_plan.hpp"
 #include "fem_stage/output/state_file.hpp"
+#include "fem_stage/stage/liquefaction.hpp"
 
 namespace tailrun::fem {
 namespace {
@@ -57,6 +58,8 @@ ConsolidationReport run_consolidation(const Model& model, MaterialPoints& points
   points.set_post_shaking(options.post_shaking);
   const Freedoms freedoms = consolidation_freedoms(model);
   ElementForces forces(model, 0.0, model.options->shake.large_displacement);
+  if (auto floor = make_residual_floor(model, state)) forces.set_residual_floor(std::move(*floor));
+  if (auto scale = make_softening_scale(model, state)) forces.set_softening_scale(std::move(*scale));
   forces.reset(points, state);
   NewmarkOptions newmark_options;
   newmark_options.gamma = newmark_options.beta = newmark_options.theta = 1.0;  // from rest: backward Euler

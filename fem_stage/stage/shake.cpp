@@ -15,6 +15,7 @@
 #include "fem_stage/output/state_file.hpp"
 #include "fem_stage/solver/energy_watch.hpp"
 #include "fem_stage/stage/free_field.hpp"
+#include "fem_stage/stage/liquefaction.hpp"
 
 namespace tailrun::fem {
 namespace {
@@ -160,6 +161,13 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
                              ? 2.0 * options.damping_ratio / (2.0 * std::numbers::pi * options.damping_frequency)
                              : 0.0;
   ElementForces forces(model, damping, options.large_displacement);
+  if (auto floor = make_residual_floor(model, state)) forces.set_residual_floor(std::move(*floor));
+  if (auto scale = make_softening_scale(model, state)) forces.set_softening_scale(std::move(*scale));
+  const auto observe_soil = [&] {
+    if (forces.residual_floor()) observe_liquefaction(model, state, *forces.residual_floor());
+    if (forces.softening_scale()) observe_softening(model, state, *forces.softening_scale());
+  };
+  observe_soil();
   forces.reset(points, state);
   for (std::size_t i = 0; i < 2 * model.nodes(); ++i)  // what a restart brings along
     report.ledger.external_work += 0.5 * model.nodal_mass[i / 2] * state.velocity[i] * state.velocity[i];
@@ -238,6 +246,7 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
     const auto ratio = excess_pore_pressure_ratio(model, state);
     for (std::size_t e = 0; e < model.count(); ++e)
       state.max_pore_pressure_ratio[e] = std::max(state.max_pore_pressure_ratio[e], ratio[e]);
+    observe_soil();
     write_outputs();
     if (!quality.rows().empty())
       progress.update(state.time, step,
@@ -261,6 +270,7 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
   report.counts = newmark.counts();
   report.quality = quality.rows();
   report.window = find_transfer_window(report.quality, motion.significant_duration(0.05, 0.95).second);
+  if (forces.residual_floor()) report.liquefaction = liquefaction_summary(model, *forces.residual_floor());
   report.material_seconds = forces.material_seconds();
   report.wall_seconds = seconds_since(start);
   return report;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "common/motion.hpp"
@@ -20,8 +21,9 @@ struct ShakeReport {
   std::optional<double> energy_open_since, hourglass_since;  // s, when so at the end (energy_watch.hpp)
   std::vector<QualityRow> quality;
   TransferWindow window;
-  std::vector<std::string> snapshots;  // file names
-  std::string failure;                 // empty when the run reached its end
+  nlohmann::ordered_json liquefaction;  // liquefaction_summary(); null without residual strengths
+  std::vector<std::string> snapshots;   // file names
+  std::string failure;                  // empty when the run reached its end
 };
 
 // The motion as the case wants it: read, scaled; one without values when the case has none. Throws InputError.

@@ -119,6 +119,7 @@ Json shake_summary(const Model& model, const Motion& motion, const ShakeReport& 
     out["liquefied_share"] = last.liquefied_share;
     out["mean_excess_pore_pressure_ratio"] = last.mean_ratio;
   }
+  if (!report.liquefaction.is_null()) out["residual_strength"] = report.liquefaction;
   out["transfer_window"] = {{"opens_s", optional(report.window.opens)},
                             {"closes_s", optional(report.window.closes)},
                             {"suggested_transfer_time_s", optional(report.window.suggested)},

@@ -10,6 +10,7 @@ import sys
 
 PAGES = {
     "docs/fem.md": ["fem_stage/model/fem_case.cpp", "fem_stage/model/boundary_options.cpp",
+                    "fem_stage/model/liquefied_strength.cpp",
                     "fem_stage/material/*.?pp", "fem_stage/element_test/element_test_case.cpp",
                     "fem_stage/element_test/calibration.cpp"],
     "docs/mpm.md": ["mpm_stage/scene/scene_reader.cpp", "mpm_stage/scene/material_reader.cpp",
