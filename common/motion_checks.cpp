@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/error.hpp"
 #include "common/motion.hpp"
 #include "common/motion_units.hpp"
 #include "common/warnings.hpp"
@@ -13,6 +14,11 @@ namespace tailrun {
 void warn_about_motion(const Motion& motion, double recorded_peak, double step, double duration) {
   const double peak = motion.peak_acceleration(), factor = recorded_peak > 0.0 ? peak / recorded_peak : 1.0;
   const double end = motion.duration();
+  constexpr double impossible = 1e4;  // m/s2, a thousand g
+  if (!(peak < impossible))
+    throw InputError(
+        fmt::format("{}: the peak acceleration is {:.4g} m/s2, but at most {:g} m/s2 are allowed: is the unit right?",
+                    motion.name, peak, impossible));
   if (peak == 0.0) add_warning(fmt::format("{}: every acceleration is zero", motion.name));
   // Strong motions peak between about 0.5 and 20 m/s2; nobody scales one by more than ten either way.
   if (factor != 1.0 && peak < 1.0 && (factor < 0.6 || peak < 0.6))

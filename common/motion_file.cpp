@@ -24,6 +24,13 @@ using Lines = std::vector<std::string>;
   throw InputError(fmt::format("{}: line {}: {}", path.string(), line + 1, message));
 }
 
+void require_possible_step(const Path& path, std::size_t line, double step) {
+  constexpr double shortest = 1e-6;  // s; recorders take 50 to 1000 values a second
+  if (step < shortest)
+    fail(path, line,
+         fmt::format("the time step is {:g} s, but at least {:g} s is required: is the unit right?", step, shortest));
+}
+
 Lines lines_of(const Path& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError(fmt::format("{}: no such motion file, or it cannot be read", path.string()));
@@ -117,6 +124,7 @@ std::optional<Counts> counts_in(const Path& path, const std::string& header, std
   }
   out.time_step = factor * *value;
   if (!(out.time_step > 0.0)) fail(path, line, "the time step must be positive");
+  require_possible_step(path, line, out.time_step);
   return out;
 }
 
@@ -265,6 +273,7 @@ Motion read_motion_csv(const Path& path) {
       fail(path, rows[k],
            fmt::format("time {:g} s, but a uniform time step ({:g} s) is required", times[k], motion.time_step));
   }
+  require_possible_step(path, rows.front(), motion.time_step);
   if (std::abs(times.front()) > 0.5 * motion.time_step)
     add_warning(fmt::format("{}: begins at {:g} s; the motion is moved to begin at 0", path.string(), times.front()));
   motion.integrate();

@@ -115,7 +115,15 @@ StatedUnit unit_stated_in(const std::string& line) {
   if (!out.after_units_word) {
     static const std::regex in(R"((?:\bIN\b|[(\[,])\s*(.*)$)");
     const std::string rest = word.suffix();
-    if (std::regex_search(rest, match, in)) out.unit = motion_unit(match[1].str(), false);
+    if (std::regex_search(rest, match, in)) {
+      out.unit = motion_unit(match[1].str(), false);
+      // "ACCELERATION IN FURLONG/S2" says a unit; "ACCELERATION IN TOKYO" does not.
+      static const std::regex per_time(R"(^[A-Z%]+ ?(?:/|\bPER\b) ?(?:S|SEC|SECS|SECONDS?)(?![A-Z]).*$)");
+      if (const std::string said = trimmed(match[1].str()); !out.unit && std::regex_match(said, per_time)) {
+        out.after_units_word = true;
+        out.unknown = said;
+      }
+    }
     // "VELOCITY TIME SERIES" without a unit is a statement; a velocity that the text of a station names is not.
     const bool series = std::regex_search(rest, std::regex(R"(^\s*(?:TIME\s*)?(?:SERIES|HISTORY)|^\s*$)"));
     if (!out.unit && named != MotionQuantity::acceleration && series) out.unit = MotionUnit{named, 1.0, word[1]};

@@ -179,6 +179,9 @@ ParticleSet read_particles(const std::filesystem::path& path) {
   particles.time = file.number_attribute("/tailrun", "time_s");
   particles.transfer_time = file.number_attribute("/tailrun", "transfer_time_s");
   particles.particle_size = file.number_attribute("/tailrun", "particle_size_m");
+  if (particles.particle_size < 0.0)
+    file.fail("/tailrun",
+              fmt::format("particle_size_m is {:g}, but 0 (not known) or more is required", particles.particle_size));
   particles.material_names = file.texts("/tailrun/material_names");
   particles.region_names = file.texts("/tailrun/region_names");
   particles.position = file.doubles("/VTKHDF/Points", 0, 3);

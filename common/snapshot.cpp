@@ -152,6 +152,12 @@ Snapshot read_snapshot(const std::filesystem::path& path) {
   snapshot.time = file.number_attribute("/tailrun", "time_s");
   snapshot.gravity = file.number_attribute("/tailrun", "gravity_m_s2");
   snapshot.fluid_density = file.number_attribute("/tailrun", "fluid_density_kg_m3");
+  if (snapshot.gravity < 0.0 || snapshot.fluid_density <= 0.0)
+    file.fail(
+        "/tailrun",
+        fmt::format("gravity_m_s2 is {:g} and fluid_density_kg_m3 {:g}, but 0 or more (downwards) and more than 0 are "
+                    "required",
+                    snapshot.gravity, snapshot.fluid_density));
   const auto base_velocity = file.doubles("/tailrun/base_velocity", 2);
   snapshot.base_velocity = {base_velocity[0], base_velocity[1]};
   snapshot.region_names = file.texts("/tailrun/region_names");

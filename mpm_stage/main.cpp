@@ -22,6 +22,7 @@
 #include "common/patient_threads.hpp"
 #include "mpm_stage/run/interrupt.hpp"
 #include "mpm_stage/run/runout.hpp"
+#include "mpm_stage/scene/request_checks.hpp"
 #include "mpm_stage/scene/scene.hpp"
 
 using namespace tailrun;
@@ -53,6 +54,7 @@ int main(int argc, char** argv) {
     const Scene scene = read_scene(file, particles, size);
     file.finish();
     hold_output_folder(output);
+    check_space(scene, output);
     echo_options(case_path.string(), file.echo());
     Provenance provenance;
     provenance.program = "mpm_stage";

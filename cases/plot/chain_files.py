@@ -41,6 +41,7 @@ class Snapshot:
         self.path = Path(path)
         self.file = open_file(path, "tailrun-snapshot")
         self.time = float(self.file["tailrun"].attrs["time_s"])
+        self.imported = bytes(self.file["tailrun/provenance"].attrs.get("program", b"")) == b"transfer_tool"
         self.position = self.file["VTKHDF/Points"][:, :2]
         self.quads = self.file["VTKHDF/Connectivity"][()].reshape(-1, 4)
         self.region_names = texts(self.file["tailrun/region_names"])

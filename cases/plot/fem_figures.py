@@ -89,7 +89,7 @@ def plot_displacement(plt, snapshot, options, output):
     fields.draw_outlines(axis, snapshot, snapshot.position, colour="0.6", width=0.5)
     style.true_aspect(axis, view)
     axis.set_title(
-        f"displacement at the end of the FEM phase, t = {snapshot.time:g} s (largest {size.max():.2f} m; grey: before)"
+        f"displacement {'imported' if snapshot.imported else 'at the end of the FEM phase'}, t = {snapshot.time:g} s (largest {size.max():.2f} m; grey: before)"
     )
     style.colour_bar(figure, mappable, axis, "displacement relative to the base (m)", extend="max")
     style.save(figure, output)

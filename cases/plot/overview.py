@@ -14,7 +14,8 @@ def plot_overview(plt, snapshot, first, last, marks, options, output):
     height = style.panel_height(view, extra=0.45)
     figure, axes = plt.subplots(3, 1, figsize=(style.WIDTH, 3.0 * height + 1.3), sharex=True)
     mappable = fem_figures.draw_pressure_ratio(axes[0], snapshot, view)
-    axes[0].set_title(f"fem_stage: excess pore pressure ratio $r_u$ after {snapshot.time:g} s of shaking", loc="left")
+    origin = "imported state" if snapshot.imported else "fem_stage"
+    axes[0].set_title(f"{origin}: excess pore pressure ratio $r_u$ after {snapshot.time:g} s of shaking", loc="left")
     figure.colorbar(mappable, ax=axes[0], label="$r_u$ (1)", fraction=0.02, pad=0.01)
     for axis, particles, title in (
         (axes[1], first, f"hand-over: {len(first.position)} particles, the liquefied ones with the strength of this run"),

@@ -48,7 +48,10 @@ img,video{max-width:100%}table{border-collapse:collapse}td,th{padding:.2em .8em;
 figure{margin:1.2em 0}figcaption{color:#555}"""
 
 
-def page(title, rows, figures):
+IMPORTED = "The imported state (import.json)"  # in place of the second section's heading
+
+
+def page(title, rows, figures, imported=False):
     parts = [f"<!doctype html><html lang=en><meta charset=utf-8><title>{html.escape(title)}</title>"]
     parts.append(f"<style>{STYLE}</style><h1>{html.escape(title)}</h1>")
     parts.append("<table><tr><th>stage<th>quantity<th>value</tr>")
@@ -60,6 +63,8 @@ def page(title, rows, figures):
         shown = [(name, caption) for name, caption in pictures if (figures / name).exists()]
         if not shown:
             continue
+        if imported and "fem_stage" in heading:
+            heading = IMPORTED
         parts.append(f"<h2>{html.escape(heading)}</h2>")
         for name, caption in shown:
             caption = html.escape(caption)
@@ -86,7 +91,7 @@ def main():
     options = chain.plot_options(arguments.case)
     plot_overview(plt, snapshot, first, last, Marks(first, phase / "mpm"), options, arguments.output.parent / "overview.png")
     title = chain.summary(phase / "mpm" / "summary.json").get("title", arguments.case.name)
-    text = page(title, results.collect(arguments.folder, phase), arguments.output.parent)
+    text = page(title, results.collect(arguments.folder, phase), arguments.output.parent, snapshot.imported)
     temporary = arguments.output.with_name(".part_" + arguments.output.name)
     temporary.write_text(text)
     os.replace(temporary, arguments.output)

@@ -46,7 +46,7 @@ STAGES = {
               replaced=("consolidation/*",)),
         Stage("fem-figures", "fem_figures.py", "", tuple(f"figures/{name}.png" for name in (
             "mesh", "velocity", "excess_pore_pressure_ratio", "displacement_fem", "fem_series", "fem_histories")),
-            "figures/.fem", ("shake",)),
+            "figures/.fem", ("shake", "import")),
         Stage("mpm-figures", "mpm_figures.py", "", tuple(f"figures/{name}.png" for name in (
             "handover", "displacement_mpm", "runout", "runout_front", "speed", "flow_depth", "sections", "energy")), "figures/.mpm", ("mpm",), replaced=("figures/sections.png", "figures/flow_depth.*")),
         Stage("film", "animate_runout.py", "", ("figures/runout.mp4", "figures/runout.gif"), "figures/.film", ("mpm",)),
@@ -110,12 +110,14 @@ class Chain:
         has_fem = "fem" in self.files
         if name in ("transfer",):
             return "transfer" in self.files and (has_fem or "import" in self.files)
-        if name in ("consolidation", "fem-figures"):
+        if name == "consolidation":
             return has_fem
+        if name == "fem-figures":
+            return has_fem or "import" in self.files
         if name in ("mpm-figures", "film"):
             return "mpm" in self.files and (name != "film" or self.film)
         if name == "report":
-            return has_fem and "mpm" in self.files
+            return self.has("fem-figures") and "mpm" in self.files
         return STAGES[name].case in self.files
 
     def names(self, until="report"):

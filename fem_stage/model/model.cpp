@@ -11,6 +11,7 @@
 #include "common/warnings.hpp"
 #include "fem_stage/boundary/phreatic_line.hpp"
 #include "fem_stage/mesh/gmsh_mesh.hpp"
+#include "fem_stage/model/free_water.hpp"
 #include "fem_stage/model/mesh_joints.hpp"
 #include "fem_stage/model/output_places.hpp"
 #include "fem_stage/model/soft_fluid.hpp"
@@ -207,6 +208,7 @@ Model build_model(const FemCase& options, const std::filesystem::path& mesh_file
   if (const double scale = load_scale(model); scale > 0.0)
     model.weight = options.gravity > 0.0 ? std::max(model.weight, scale) : scale;
   gather_held_pressures(options, model);
+  warn_of_weightless_water(model);
   if (options.boundaries.base != BaseKind::none) gather_base(model);
   check_support(model);
   return model;

@@ -28,6 +28,9 @@ struct LawLoops {
                    const double* trace, double dt) = nullptr;
   // Recoverable energy, J.
   double (*energy)(const MaterialConstants& k, const Particles<Dim>& P, std::size_t begin, std::size_t end) = nullptr;
+  // Recoverable energy of particle p, J, were its volumetric increment `trace`. Null where the pressure follows its
+  // elastic modulus whatever the volume.
+  double (*energy_after)(const MaterialConstants& k, const Particles<Dim>& P, std::size_t p, double trace) = nullptr;
 };
 
 struct MaterialLaw {

@@ -42,6 +42,11 @@ double lowest_pressure(const MaterialConstants& k) {
   return k.own.get<Own>().allow_tension ? -k.bulk : 0.0;
 }
 
+// m3/kg. Drops that come apart carry no stress; the room between them is not theirs.
+double largest_specific_volume(const MaterialConstants& k) {
+  return k.own.get<Own>().allow_tension ? 1e300 : k.largest_specific_volume;
+}
+
 // m3 at no pressure. Particles that a scene did not make are taken at the material's density.
 template <int Dim>
 double rest_volume(const MaterialConstants& k, const Particles<Dim>& P, std::size_t p) {
@@ -54,13 +59,15 @@ double update_plane(const MaterialConstants& k, Particles<2>& P, std::size_t beg
   Vec4 dissipated = {};
   const double viscous = dt > 0.0 ? 2.0 * k.explicit_viscosity / dt : 0.0;
   const Vec4 low = splat(lowest_pressure(k));
+  const double most = largest_specific_volume(k);
   const bool own = !P.rest_volume.empty();
   const double* rest = own ? P.rest_volume.data() + begin : c.mass;
   const double to_volume = own ? 1.0 : 1.0 / k.reference_density;
   for_each_group(
       0, end - begin, [&](const auto& g) __attribute__((always_inline)) {
         const Vec4 t = g.read(c.trace);
-        const Vec4 growth = (1.0 + 0.25 * t) / (1.0 - 0.25 * t), volume = g.read(c.volume) * (growth * growth);
+        const Vec4 growth = (1.0 + 0.25 * t) / (1.0 - 0.25 * t);
+        const Vec4 volume = smaller(g.read(c.volume) * (growth * growth), most * g.read(c.mass));
         const Vec4 pressure = larger(low, k.bulk * (to_volume * g.read(rest) / volume - 1.0));
         const Vec4 gxx = g.read(c.gxx), gyy = g.read(c.gyy), third = (gxx + gyy) * (1.0 / 3.0);
         const Vec4 exx = gxx - third, eyy = gyy - third, exy = 0.5 * (g.read(c.gxy) + g.read(c.gyx));
@@ -81,7 +88,7 @@ double update_solid(const MaterialConstants& k, Particles<3>& P, std::size_t beg
   for (std::size_t p = begin; p < end; ++p) {
     const double t = trace[p - begin];
     const Matrix3 e = deviator_of(gradient_matrix(P, p));
-    P.volume[p] *= volume_ratio(t);
+    P.volume[p] = std::min(P.volume[p] * volume_ratio(t), largest_specific_volume(k) * P.mass[p]);
     const double pressure = std::max(low, k.bulk * (rest_volume(k, P, p) / P.volume[p] - 1.0));
     const double viscous = dt > 0.0 ? 2.0 * k.explicit_viscosity / dt : 0.0;
     store(P, p, viscous * e - pressure * Matrix3::Identity());
@@ -90,23 +97,32 @@ double update_solid(const MaterialConstants& k, Particles<3>& P, std::size_t beg
   return dissipated;
 }
 
-// Work of the pressure K (1 / J - 1) on the compression to J of the volume at no pressure, J: K V_0 (J - 1 - ln J).
+// Work of the pressure K (1 / J - 1) on the compression from the volume at no pressure, `whole`, to J of it, J:
+// K V_0 (J - 1 - ln J).
+double stored_energy(const MaterialConstants& k, double whole, double volume) {
+  const double J = volume / whole;
+  return J < 1.0 || k.own.get<Own>().allow_tension ? k.bulk * whole * (J - 1.0 - std::log(J)) : 0.0;
+}
+
 template <int Dim>
-double stored_energy(const MaterialConstants& k, const Particles<Dim>& P, std::size_t begin, std::size_t end) {
-  double energy = 0.0;
-  for (std::size_t p = begin; p < end; ++p) {
-    const double whole = rest_volume(k, P, p), J = P.volume[p] / whole;
-    if (J < 1.0 || k.own.get<Own>().allow_tension) energy += k.bulk * whole * (J - 1.0 - std::log(J));
-  }
-  return energy;
+double energy(const MaterialConstants& k, const Particles<Dim>& P, std::size_t begin, std::size_t end) {
+  double sum = 0.0;
+  for (std::size_t p = begin; p < end; ++p) sum += stored_energy(k, rest_volume(k, P, p), P.volume[p]);
+  return sum;
+}
+
+template <int Dim>
+double energy_after(const MaterialConstants& k, const Particles<Dim>& P, std::size_t p, double trace) {
+  const double growth = (1.0 + 0.5 * trace / Dim) / (1.0 - 0.5 * trace / Dim);
+  return stored_energy(k, rest_volume(k, P, p), P.volume[p] * std::pow(growth, Dim));
 }
 
 void set_constants(const Material& m, double /*cell_size*/, MaterialConstants& k) {
   k.bulk = m.bulk_modulus;
   k.explicit_viscosity = m.rate.consistency;
   k.own = m.own;
-  k.plane = {update_plane, stored_energy<2>};
-  k.solid = {update_solid, stored_energy<3>};
+  k.plane = {update_plane, energy<2>, energy_after<2>};
+  k.solid = {update_solid, energy<3>, energy_after<3>};
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "common/error.hpp"
 #include "mpm_stage/scene/polygon.hpp"
+#include "mpm_stage/scene/request_checks.hpp"
 #include "mpm_stage/scene/scene.hpp"
 
 namespace tailrun::mpm {
@@ -116,8 +117,10 @@ Filling read_filling(const CaseNode& node, int dimension, double h, const std::a
     if (f.rotation != 0.0 && dimension == 3) node.fail("rotation", "needs dimension 2");
   }
   const int per_cell = static_cast<int>(node.integer_or("points_per_cell_side", 1, 10, 2));
-  for (int d = 0; d < dimension; ++d)
-    f.count[d] = std::max(1, static_cast<int>(std::lround((f.high[d] - f.low[d]) / h * per_cell)));
+  std::array<double, 3> along{1.0, 1.0, 1.0};
+  for (int d = 0; d < dimension; ++d) along[d] = (f.high[d] - f.low[d]) / h * per_cell;
+  check_particle_count(node, along, dimension);
+  for (int d = 0; d < dimension; ++d) f.count[d] = std::max(1, static_cast<int>(std::lround(along[d])));
   f.random = node.choice_or("placement", {"regular", "random"}, "regular") == "random";
   f.seed = static_cast<unsigned>(node.integer_or("seed", 0, 1000000, 1));
   const auto velocity = node.numbers_or("velocity", "m/s", Range::any(), std::vector<double>(dimension, 0.0),

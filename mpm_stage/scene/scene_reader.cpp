@@ -8,6 +8,7 @@
 #include "common/plausible_material.hpp"
 #include "common/plausible_state.hpp"
 #include "common/warnings.hpp"
+#include "mpm_stage/scene/request_checks.hpp"
 #include "mpm_stage/scene/scene.hpp"
 
 namespace tailrun::mpm {
@@ -79,7 +80,7 @@ void read_scheme(const CaseNode& root, Scene& scene) {
   o.soil_limits_friction = scheme.boolean_or("soil_limits_friction", true);
   o.contact_reach = scheme.number_or("contact_reach", "cells", Range::between(0.0, 1.0), o.contact_reach);
   if (const auto share = scheme.number_if("surface_share", "1", Range::between(0.0, 0.2))) o.surface_share = *share;
-  if (const auto cutoff = scheme.number_if("mass_cutoff", "1", Range::between(0.0, 0.1))) o.mass_cutoff = *cutoff;
+  if (const auto cutoff = scheme.number_if("mass_cutoff", "1", Range::between(0.0, 0.2))) o.mass_cutoff = *cutoff;
   o.local_damping = root.object_or_empty("damping").number_or("local", "1", Range::between(0.0, 0.99), 0.0);
   if (o.local_damping > 0.0 && o.transfer == TransferName::fmpm)
     root.fail("damping/local",
@@ -274,10 +275,10 @@ namespace {
 
 // "grid"/"cell_size", unless "sizes" has another for the size chosen: {"coarse": {"cell_size": 2}, ...}.
 double read_cell_size(const CaseNode& root, const std::string& size) {
-  double cell_size = root.object("grid").number("cell_size", "m", Range::positive());
+  double cell_size = root.object("grid").number("cell_size", "m", Range::between(1e-6, 1e5));
   std::vector<std::string> names;
   for (const auto& [name, node] : root.object_or_empty("sizes").members()) {
-    const double value = node.number("cell_size", "m", Range::positive());
+    const double value = node.number("cell_size", "m", Range::between(1e-6, 1e5));
     if (name == size) cell_size = value;
     names.push_back(name);
   }
@@ -325,7 +326,7 @@ void judge(const CaseNode& root, const Scene& scene) {
 Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_override, const std::string& size) {
   const CaseNode root = file.root();
   Scene scene;
-  scene.title = root.text_or("title", file.path().parent_path().filename().string());
+  scene.title = root.text_or("title", std::filesystem::absolute(file.path()).parent_path().filename().string());
   scene.dimension = static_cast<int>(root.integer_or("dimension", 2, 3, 2));
   scene.cell_size = read_cell_size(root, size);
   const auto dimension = static_cast<std::size_t>(scene.dimension);
@@ -373,6 +374,7 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
   read_base_motion(root, scene);
   read_output(root, scene);
   warn_of_long_steps(scene);
+  check_requests(root, scene);
   return scene;
 }
 

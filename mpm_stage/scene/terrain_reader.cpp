@@ -1,7 +1,11 @@
 // "terrain" of mpm.json: lines given here or carried in the particles file, with friction by segment.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "common/error.hpp"
+#include "common/warnings.hpp"
 #include "mpm_stage/scene/scene.hpp"
 
 namespace tailrun::mpm {
@@ -24,6 +28,13 @@ std::vector<double> segment_friction(const CaseNode& node, const TerrainInput& l
       const double middle = 0.5 * (line.points[s][0] + line.points[s + 1][0]);
       if (middle >= regions[r] && middle < regions[r + 1]) friction[s] = regions[r + 2];
     }
+  constexpr double degrees_from = 10.0;  // a ground that holds what lies on it has 1
+  const double largest = *std::max_element(friction.begin(), friction.end());
+  if (largest > degrees_from && largest < 90.0)
+    add_warning(
+        fmt::format("terrain line '{}': friction {:g} is a coefficient, not an angle; were it meant in degrees, "
+                    "it would be {:.3g}",
+                    line.name, largest, std::tan(largest * M_PI / 180.0)));
   return friction;
 }
 

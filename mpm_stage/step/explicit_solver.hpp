@@ -65,10 +65,15 @@ class ExplicitSolver final : public Solver<Dim> {
         sleep_(options.sleep),
         water_(options.ponds),
         filling_(0.0) {
-    double mass = 0.0;
+    double mass = 0.0, volume = 0.0;
     for (const double m : P_.mass) mass += m;
-    mass_cutoff_ = (options.mass_cutoff < 0.0 ? Shape::mass_cutoff : options.mass_cutoff) * mass /
-                   static_cast<double>(std::max<std::size_t>(1, P_.count()));
+    for (const double v : P_.volume) volume += v;
+    const auto count = static_cast<double>(std::max<std::size_t>(1, P_.count()));
+    const double in_cell = std::max(1.0, count * std::pow(cell_size, Dim) / volume);
+    mass_cutoff_ =
+        (options.mass_cutoff < 0.0 ? Shape::mass_cutoff(options.courant, std::pow(in_cell, (Dim - 1.0) / Dim))
+                                   : options.mass_cutoff) *
+        mass / count;
     averaging_ = false;
     for (const auto& m : materials_) {
       constants_.push_back(constants_of(m, cell_size));

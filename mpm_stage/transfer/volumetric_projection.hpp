@@ -219,6 +219,12 @@ double gather_volumetric(const MaterialConstants& material, const Particles<Dim>
   constexpr int T = Tile<Dim, Shape>::side;
   constexpr double most = 0.01;  // of volumetric strain in a step
   const VolumetricLaw<Dim> law(material);
+  const auto energy_after = [&] {
+    if constexpr (Dim == 2)
+      return material.plane.energy_after;
+    else
+      return material.solid.energy_after;
+  }();
   Vec4 given = {};
   for_each_group(
       begin, end, [&](const auto& g) __attribute__((always_inline)) {
@@ -241,7 +247,14 @@ double gather_volumetric(const MaterialConstants& material, const Particles<Dim>
           const Vec4 crowding = {second[in.first[0]][1], second[in.first[1]][1], second[in.first[2]][1],
                                  second[in.first[3]][1]};
           const Vec4 d = smaller(larger(relief * crowding * shear_of<Dim>(P, g), splat(-most)), splat(most));
-          given += g.only(g.read(P.volume.data()) * d * (0.5 * law.modulus * d - p - law.modulus * e));
+          if (energy_after == nullptr) {
+            given += g.only(g.read(P.volume.data()) * d * (0.5 * law.modulus * d - p - law.modulus * e));
+          } else {
+            for (int k = 0; k < g.count; ++k)
+              if (d[k] != 0.0)
+                given[k] += energy_after(material, P, g.first + static_cast<std::size_t>(k), e[k] - d[k]) -
+                            energy_after(material, P, g.first + static_cast<std::size_t>(k), e[k]);
+          }
           e -= d;
         }
         of_run.write(increment, e);

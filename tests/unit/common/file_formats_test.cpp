@@ -120,6 +120,21 @@ TEST_CASE("the wrong file, a cut file and values that are not finite are refused
   CHECK_THROWS_AS(read_snapshot(snapshot), InputError);
 }
 
+TEST_CASE("gravity upwards, water without a density and particles of negative size are refused") {
+  const auto path = folder / "tailrun_impossible.h5";
+  for (const auto& [gravity, density] : {std::pair{-9.81, 1000.0}, std::pair{9.81, 0.0}}) {
+    Snapshot wrong = small_snapshot();
+    wrong.gravity = gravity;
+    wrong.fluid_density = density;
+    write_snapshot(path, wrong, {});
+    CHECK_THROWS_WITH_AS(read_snapshot(path), doctest::Contains("gravity_m_s2 is"), InputError);
+  }
+  ParticleSet points = small_particles();
+  points.particle_size = -0.5;
+  write_particles(path, points, {});
+  CHECK_THROWS_WITH_AS(read_particles(path), doctest::Contains("particle_size_m is -0.5"), InputError);
+}
+
 TEST_CASE("SHA-256 of a known text") {
   CHECK(sha256_of_text("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }

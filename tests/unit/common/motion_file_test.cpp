@@ -147,6 +147,20 @@ TEST_CASE("rows of a table: nothing is left out without a word") {
   CHECK(warned_of("begins at 1 s"));
 }
 
+TEST_CASE("units that are none, steps that no recorder has and peaks that no ground has are refused") {
+  const auto message = [](const char* line, const char* counts) {
+    return refusal([&] { at2(line, counts, ".1 .2 .3"); });
+  };
+  const char* plain = "NPTS= 3, DT= .005 SEC";
+  CHECK(message("ACCELERATION IN FURLONG/S2", plain).find("'FURLONG/S2'") != std::string::npos);
+  CHECK(message("ACCELERATION TIME HISTORY (BANANA PER SEC)", plain).find("BANANA") != std::string::npos);
+  CHECK(message("ACCELERATION IN TOKYO", plain) == "");
+  CHECK(message("UNITS OF G", "NPTS= 3, DT= 1e-300 SEC").find("1e-300 s") != std::string::npos);
+  CHECK(refusal([] { csv("t,a\n0,1\n1e-12,2\n2e-12,1\n"); }).find("1e-12 s") != std::string::npos);
+  const auto huge = csv("t,a\n0,1e300\n0.01,-1e300\n0.02,0\n");
+  CHECK(refusal([&] { warn_about_motion(huge, 1e300, 0.01, 1.0); }).find("1e+300 m/s2") != std::string::npos);
+}
+
 TEST_CASE("what is hardly meant gets a warning") {
   const auto motion = [](double scale) {
     Motion out{.name = "m", .time_step = 0.01, .acceleration = {}, .velocity = {}};

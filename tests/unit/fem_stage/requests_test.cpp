@@ -158,3 +158,29 @@ TEST_CASE("rectangles beyond memory") {
   CHECK(refusal([] { read_fem_case(folder / "tailrun_requests.json", ""); }).find("1e+10 elements") !=
         std::string::npos);
 }
+
+TEST_CASE("a phreatic line above the ground is warned of, with the depth, unless a pond stands there") {
+  const auto told = [](double level, bool pond) {
+    forget_warnings();
+    const auto path = case_file(
+        R"("duration": 1)",
+        fmt::format(R"("geostatic": {{ "seepage": "hydrostatic" }}, "phreatic_line": [[-9, {0}], [9, {0}]],)", level));
+    std::ifstream file(path);
+    std::string text((std::istreambuf_iterator<char>(file)), {});
+    file.close();
+    const std::string before = R"("roller_lines")";
+    if (pond)
+      text.insert(text.find(before), fmt::format(R"("ponded_water": [{{ "lines": ["top"], "level": {} }}], )", level));
+    std::ofstream(path) << text;
+    const FemCase options = read_fem_case(path, "");
+    write_rectangle_mesh(*options.mesh.rectangle, folder / "tailrun_requests.msh");
+    build_model(options, folder / "tailrun_requests.msh");
+    std::string all;
+    for (const auto& warning : warnings()) all += warning + "\n";
+    return all.find("/phreatic_line: lies above the ground") == std::string::npos ? std::string() : all;
+  };
+  CHECK(told(9.0, false).find("at 5 of its 5 nodes, by up to 5 m") != std::string::npos);
+  CHECK(told(9.0, true) == "");
+  CHECK(told(4.05, false) == "");
+  CHECK(told(2.0, false) == "");
+}

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mpm_stage/grid/shape_functions.hpp"
+#include "mpm_stage/material/stress_update.hpp"
 
 using namespace tailrun::mpm;
 
@@ -124,6 +125,35 @@ TEST_CASE("crowded particles give up volume with their shear, and are given the 
     wanted += P.volume[p] * (after * after - before * before) / (2.0 * K);
   }
   CHECK(given == doctest::Approx(wanted));
+}
+
+TEST_CASE("what a crowded fluid is given is what its pressure stores, and a drop without pressure stores nothing") {
+  constexpr int T = Tile<2, QuadraticShape>::side;
+  Material water;
+  water.law = &law_named("newtonian_fluid");
+  water.bulk_modulus = 2e6;
+  water.density = density;
+  const MaterialConstants k = constants_of(water, h);
+  AlignedVector<PatchFit> fit(Tile<2, QuadraticShape>::nodes, PatchFit{});
+  for (int j = 0; j + 1 < T; j += 2)
+    for (int i = 0; i + 1 < T; i += 2) fit[static_cast<std::size_t>(j * T + i + 1)] = PatchFit{0.0, 0.2, 0.0, 0.0};
+  const auto given = [&](double size) {
+    auto P = square([](Point x) { return x; });
+    double trace[1], unrelieved[1];
+    P.volume[0] *= size;
+    P.gradient[1][0] = 0.02;
+    const double got = gather_volumetric<2, QuadraticShape>(k, P, 0, 1, {0.0, 0.0}, 1.0 / h, fit.data(), 1.0, trace);
+    gather_volumetric<2, QuadraticShape>(k, P, 0, 1, {0.0, 0.0}, 1.0 / h, fit.data(), 0.0, unrelieved);
+    const auto stored = [&](double increment) {
+      auto after = P;
+      update_stress(k, after, 0, 1, &increment, 1e-3);
+      return elastic_energy(k, after, 0, 1);
+    };
+    CHECK(got == doctest::Approx(stored(trace[0]) - stored(unrelieved[0])).epsilon(1e-9));
+    return got;
+  };
+  CHECK(given(1.2) == 0.0);
+  CHECK(given(0.98) > 0.0);
 }
 
 }  // namespace

@@ -148,3 +148,15 @@ TEST_CASE("voids that open do not count as the soil's volume beyond its limit") 
   for (int i = 0; i < 40; ++i) update(k, P, {0.05, 0.0, 0.0, 0.05}, 1e-3);
   CHECK(P.volume[0] == doctest::Approx(2.0).epsilon(1e-12));
 }
+
+TEST_CASE("drops of a fluid that come apart do not count the room between them as theirs") {
+  Material water;
+  water.law = &law_named("newtonian_fluid");
+  water.bulk_modulus = 2e6;
+  water.density = 1000.0;
+  MaterialConstants k = constants_of(water, 1.0);
+  Particles<2> P = one_particle({0, 0, 0, 0});
+  k.largest_specific_volume = 1.25 * P.volume[0] / P.mass[0];
+  for (int i = 0; i < 40; ++i) update(k, P, {0.05, 0.0, 0.0, 0.05}, 1e-3);
+  CHECK(P.volume[0] == doctest::Approx(1.25).epsilon(1e-12));
+}
