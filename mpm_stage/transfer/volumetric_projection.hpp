@@ -246,7 +246,11 @@ double gather_volumetric(const MaterialConstants& material, const Particles<Dim>
         if (relief > 0.0) {
           const Vec4 crowding = {second[in.first[0]][1], second[in.first[1]][1], second[in.first[2]][1],
                                  second[in.first[3]][1]};
-          const Vec4 d = smaller(larger(relief * crowding * shear_of<Dim>(P, g), splat(-most)), splat(most));
+          // Nothing that pulls is crowded, nor does relief make it pull: where tension is cut off it would store
+          // nothing.
+          const Vec4 held = p * law.flexibility + e, none = {};
+          const Vec4 wanted = smaller(larger(relief * crowding * shear_of<Dim>(P, g), splat(-most)), splat(most));
+          const Vec4 d = held < none ? larger(wanted, held) : none;
           if (energy_after == nullptr) {
             given += g.only(g.read(P.volume.data()) * d * (0.5 * law.modulus * d - p - law.modulus * e));
           } else {

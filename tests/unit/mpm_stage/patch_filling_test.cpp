@@ -79,6 +79,14 @@ struct Found {
   std::function<PatchFit(double, double)> at;
 };
 
+Material clay() {
+  Material soil;
+  soil.law = &law_named("tresca");
+  soil.youngs_modulus = 5e6;
+  soil.poisson_ratio = 0.33;
+  return soil;
+}
+
 TEST_CASE("particles that stand as close as their volumes are not crowded, at the surface neither") {
   Found found(square([](Point x) { return x; }));
   for (const double x : {0.5, 1.5, 5.5, 11.5})
@@ -99,11 +107,7 @@ TEST_CASE("particles farther apart than their volumes count where all around is 
 TEST_CASE("crowded particles give up volume with their shear, and are given the energy that it takes") {
   constexpr int T = Tile<2, QuadraticShape>::side;
   constexpr double crowding = 0.1, relief = 0.5;
-  Material clay;
-  clay.law = &law_named("tresca");
-  clay.youngs_modulus = 5e6;
-  clay.poisson_ratio = 0.33;
-  const MaterialConstants k = constants_of(clay, h);
+  const MaterialConstants k = constants_of(clay(), h);
   const double K = VolumetricLaw<2>(k).modulus;
   auto P = square([](Point x) { return x; });
   AlignedVector<PatchFit> fit(Tile<2, QuadraticShape>::nodes, PatchFit{});
@@ -112,7 +116,7 @@ TEST_CASE("crowded particles give up volume with their shear, and are given the 
   const std::size_t n = 8;  // of the first row, in the tile that begins at the origin
   double wanted = 0.0, increment[n];
   for (std::size_t p = 0; p < n; ++p) {
-    P.stress[0][p] = P.stress[1][p] = -1e4 * static_cast<double>(p);
+    P.stress[0][p] = P.stress[1][p] = -0.002 * K * static_cast<double>(p + 1);
     P.gradient[1][p] = 0.02;   // shear
     P.gradient[0][p] = 0.001;  // and stretch along x: shear too, and volume
   }
@@ -125,6 +129,27 @@ TEST_CASE("crowded particles give up volume with their shear, and are given the 
     wanted += P.volume[p] * (after * after - before * before) / (2.0 * K);
   }
   CHECK(given == doctest::Approx(wanted));
+}
+
+TEST_CASE("soil that is pulled gives up nothing, and soil with room around is pulled by none of it") {
+  constexpr int T = Tile<2, QuadraticShape>::side;
+  const MaterialConstants k = constants_of(clay(), h);
+  const double K = VolumetricLaw<2>(k).modulus;
+  const auto relieved = [&](double stress, double crowding) {
+    AlignedVector<PatchFit> fit(Tile<2, QuadraticShape>::nodes, PatchFit{});
+    for (int j = 0; j + 1 < T; j += 2)
+      for (int i = 0; i + 1 < T; i += 2)
+        fit[static_cast<std::size_t>(j * T + i + 1)] = PatchFit{0.0, crowding, 0.0, 0.0};
+    auto P = square([](Point x) { return x; });
+    P.stress[0][0] = P.stress[1][0] = stress;
+    P.gradient[1][0] = 0.02;
+    double increment[1];
+    gather_volumetric<2, QuadraticShape>(k, P, 0, 1, {0.0, 0.0}, 1.0 / h, fit.data(), 1.0, increment);
+    return increment[0];
+  };
+  CHECK(relieved(1e3, 0.2) == 0.0);
+  CHECK(relieved(-1e3, 0.2) == doctest::Approx(-0.2 * 0.02));
+  CHECK(relieved(-1e-4 * K, -0.2) == doctest::Approx(1e-4));
 }
 
 TEST_CASE("what a crowded fluid is given is what its pressure stores, and a drop without pressure stores nothing") {
@@ -142,6 +167,7 @@ TEST_CASE("what a crowded fluid is given is what its pressure stores, and a drop
     double trace[1], unrelieved[1];
     P.volume[0] *= size;
     P.gradient[1][0] = 0.02;
+    for (int i = 0; i < 3; ++i) P.stress[i][0] = size < 1.0 ? -water.bulk_modulus * (1.0 / size - 1.0) : 0.0;
     const double got = gather_volumetric<2, QuadraticShape>(k, P, 0, 1, {0.0, 0.0}, 1.0 / h, fit.data(), 1.0, trace);
     gather_volumetric<2, QuadraticShape>(k, P, 0, 1, {0.0, 0.0}, 1.0 / h, fit.data(), 0.0, unrelieved);
     const auto stored = [&](double increment) {
