@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
     const Scene scene = read_scene(file, particles, size);
     file.finish();
     hold_output_folder(output);
-    check_space(scene, output);
+    if (!control.resume) check_space(scene, output);
     echo_options(case_path.string(), file.echo());
     Provenance provenance;
     provenance.program = "mpm_stage";

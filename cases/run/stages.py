@@ -47,8 +47,9 @@ STAGES = {
         Stage("fem-figures", "fem_figures.py", "", tuple(f"figures/{name}.png" for name in (
             "mesh", "velocity", "excess_pore_pressure_ratio", "displacement_fem", "fem_series", "fem_histories")),
             "figures/.fem", ("shake", "import")),
-        Stage("mpm-figures", "mpm_figures.py", "", tuple(f"figures/{name}.png" for name in (
-            "handover", "displacement_mpm", "runout", "runout_front", "speed", "flow_depth", "sections", "energy")), "figures/.mpm", ("mpm",), replaced=("figures/sections.png", "figures/flow_depth.*")),
+        Stage("mpm-figures", "mpm_figures.py", "", (*(f"figures/{name}.png" for name in (
+            "handover", "displacement_mpm", "runout", "runout_front", "speed", "flow_depth", "sections", "energy")), "figures/flow_depth.csv"),
+            "figures/.mpm", ("mpm",), replaced=("figures/sections.png", "figures/flow_depth.*")),
         Stage("film", "animate_runout.py", "", ("figures/runout.mp4", "figures/runout.gif"), "figures/.film", ("mpm",)),
         Stage("report", "report.py", "", ("figures/overview.png", "figures/report.html"), "figures/report.html",
               ("fem-figures", "mpm-figures", "film")),
@@ -99,8 +100,8 @@ class Chain:
     def __post_init__(self):
         files = {name: Path(self.case_dir) / f"{name}.json" for name in what_if.STAGES}
         self.files = {name: path for name, path in files.items() if path.exists()}
-        if "fem" in self.files:
-            self.files.pop("import", None)
+        if "fem" in self.files and "import" in self.files:
+            raise what_if.SettingError(f"{self.case_dir} has fem.json and import.json: a case begins with one of them; keep the one that is meant")
         for stage in self.settings:
             if stage not in self.files:
                 raise what_if.SettingError(f"SET: {stage}:{self.settings[stage][0]}: {self.case_dir} has no {stage}.json")

@@ -1,7 +1,7 @@
 """The headline numbers of a run: the one list that comparisons, sweeps and ensembles have.
 
 A number is looked for in the summaries under each of its places in turn; a run that lacks it has None there. Volumes that no
-summary has come from the frames (profile.py).
+summary has come from the frames (profile_of_flow.py).
 """
 
 import math

@@ -91,19 +91,19 @@ void observe_liquefaction(const Model& model, State& state, ResidualFloor& floor
 
 std::optional<SofteningScale> make_softening_scale(const Model& model, const State& state) {
   const auto& chosen = model.options->softening;
-  if (chosen.empty()) {
-    for (const double active : state.softening)
-      if (active != 0.0)
-        throw InputError(
-            "the state's soil softens by the height of its elements, but no material of the case has a reference "
-            "height; go on with the /materials/.../softening that it was made with");
-    return {};
-  }
   std::vector<double> scale(model.count(), 1.0);
   const std::vector<int> material = materials_of_regions(model);
-  for (std::size_t e = 0; e < model.count(); ++e)
-    if (const auto found = chosen.find(material[static_cast<std::size_t>(model.mesh.region[e])]); found != chosen.end())
+  for (std::size_t e = 0; e < model.count(); ++e) {
+    const auto found = chosen.find(material[static_cast<std::size_t>(model.mesh.region[e])]);
+    if (found != chosen.end())
       scale[e] = height_of(model.mesh, e) / found->second.reference_height;
+    else if (!state.softening.empty() && state.softening[e] != 0.0)
+      throw InputError(fmt::format(
+          "the state's soil softens by the height of its elements in region '{}', whose material has no reference "
+          "height; go on with the /materials/.../softening that it was made with",
+          model.mesh.region_names[static_cast<std::size_t>(model.mesh.region[e])]));
+  }
+  if (chosen.empty()) return {};
   SofteningScale out(std::move(scale));
   if (!state.softening.empty()) out.restore(state.softening);
   return out;

@@ -25,7 +25,7 @@ void observe_liquefaction(const Model& model, State& state, ResidualFloor& floor
 // Activates it in every element that has sheared beyond its material's strain, and keeps in the state which have.
 void observe_softening(const Model& model, State& state, SofteningScale& scale);
 
-// {material: the law with "elements", "liquefied_elements" and "strength_Pa" of these}
+// {material: the law with "elements", "liquefied_elements" and "liquefied_strength_Pa" of these}
 nlohmann::ordered_json liquefaction_summary(const Model& model, const ResidualFloor& floor);
 
 }  // namespace tailrun::fem

@@ -26,8 +26,8 @@ void settle(ContactPairs<Dim>& pairs) {
     if (pairs.press() <= no_change * first) return;
 }
 
-// `ground` is what pushes each of the `count` bodies at which the pairs point. What is left after the last turn is an
-// approach of bodies, never one of the ground.
+// `ground` is what pushes each of the `count` bodies at which the pairs point. It has the last word: what is left after
+// the last turn is an approach of bodies.
 template <int Dim>
 void settle(ContactPairs<Dim>& pairs, BodyAtNode<Dim>* body, GroundPush<Dim>* ground, int count) {
   const auto press_on_ground = [=] {

@@ -141,25 +141,17 @@ class ContactPair {
 
   double approach() const { return along<Dim>(i_->v, n_) - along<Dim>(j_->v, n_); }
 
-  // Adds to the normal impulse what stops the approach. Returns by how much the impulse changed.
+  // Adds to the normal impulse what stops the approach; soils mixed through each other come to move as one. Returns by
+  // how much the impulse changed (N s).
   double press() {
-    if (mixed_ || !presses_) return 0.0;
+    if (mixed_) return join();
+    if (!presses_) return 0.0;
     double impulse = normal_ + reduced_ * (approach() - allowed_);
     if (law_.opening == Opening::free) impulse = std::max(0.0, impulse);
     const double change = impulse - normal_;
     normal_ = impulse;
     push(n_, change);
     return std::fabs(change);
-  }
-
-  // Soils mixed through each other move as one. Whether these are, and do now.
-  bool join() {
-    if (!mixed_) return false;
-    for (int d = 0; d < Dim; ++d) {
-      const double together = (i_->mass * i_->v[d] + j_->mass * j_->v[d]) / (i_->mass + j_->mass);
-      i_->v[d] = j_->v[d] = together;
-    }
-    return true;
   }
 
   // What brakes their sliding; nothing, with mass 0, where they do not touch.
@@ -174,6 +166,15 @@ class ContactPair {
   }
 
  private:
+  double join() {
+    double change = 0.0;
+    for (int d = 0; d < Dim; ++d) {
+      change += reduced_ * std::fabs(i_->v[d] - j_->v[d]);
+      const double together = (i_->mass * i_->v[d] + j_->mass * j_->v[d]) / (i_->mass + j_->mass);
+      i_->v[d] = j_->v[d] = together;
+    }
+    return change;
+  }
   // Its surface over that of a half-space with its share of the node: 1, less at corners and of thin plates.
   template <class Shape>
   static double flatness(const BodyAtNode<Dim>& body, const HalfSpaces<Shape>& half, double h) {

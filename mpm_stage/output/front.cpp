@@ -126,13 +126,13 @@ bool FrontSeries<Dim>::at_rest(const RestCriterion& rest) const {
 
 template <int Dim>
 double FrontSeries<Dim>::front_speed(double duration) const {
-  for (auto row = rows_.rbegin(); row != rows_.rend(); ++row) {
+  double speed = std::nan("");
+  for (auto row = rows_.rbegin(); row != rows_.rend() && std::isfinite(row->flow_front); ++row) {
     const double since = rows_.back().time - row->time;
-    if (since < duration * (1.0 - 1e-9)) continue;
-    const double way = output_.front_sign * (rows_.back().flow_front - row->flow_front);
-    return std::isfinite(way) ? way / since : 0.0;
+    if (since > 0.0) speed = output_.front_sign * (rows_.back().flow_front - row->flow_front) / since;
+    if (since >= duration * (1.0 - 1e-9)) break;
   }
-  return 0.0;
+  return speed;
 }
 
 template <int Dim>

@@ -36,7 +36,7 @@ class FrontSeries {
   const FrontRow& sample(double time, const Particles<Dim>& P);
   // Both thresholds of the criterion have held for its whole duration.
   bool at_rest(const RestCriterion& rest) const;
-  // m/s, of the flow's front over the last `duration` (s) of the rows; 0 where nothing has flowed for so long.
+  // m/s, of the flow's front over the last `duration` (s) of the rows, or as long as there has been one; NaN without.
   double front_speed(double duration) const;
   const std::vector<FrontRow>& rows() const { return rows_; }
   double toe() const { return toe_; }                                    // m, before the motion

@@ -180,7 +180,7 @@ Json make_summary(const Scene& scene, Solver<Dim>& solver, const RunRecord& reco
   j["top_m"] = f1.top;
   j["final_rms_speed_m_s"] = f1.rms_speed;
   j["final_maximum_speed_m_s"] = f1.maximum_speed;
-  j["final_front_speed_m_s"] = front.front_speed(scene.rest.duration);
+  j["final_front_speed_m_s"] = number(front.front_speed(scene.rest.duration));
   j["unbalanced_force_ratio_first_step"] = record.first_unbalanced;
   j["largest_kinetic_energy_J"] = record.largest_kinetic;
   j["energy"] = {{"kinetic_J", last.kinetic},

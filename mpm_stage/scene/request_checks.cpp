@@ -101,8 +101,14 @@ void check_space(const Scene& scene, const std::filesystem::path& folder) {
   const auto space = std::filesystem::space(folder, error);
   if (error) return;
   const double frames = std::floor(likely_duration(scene) / scene.output.frame_interval) + 1.0;
+  double replaced = 0.0;  // bytes
+  for (std::filesystem::directory_iterator file(folder / "frames", error), end; !error && file != end;
+       file.increment(error)) {
+    std::error_code ignored;
+    if (file->is_regular_file(ignored)) replaced += static_cast<double>(file->file_size(ignored));
+  }
   const double bytes = frames * static_cast<double>(scene.particles.count()) * bytes_in_frame;
-  if (bytes > static_cast<double>(space.available))
+  if (bytes > static_cast<double>(space.available) + replaced)
     throw InputError(fmt::format(
         "/output/frame_interval: {:.3g} frames of {} particles take {:.3g} GB or more, but {} has {:.3g} GB "
         "left",

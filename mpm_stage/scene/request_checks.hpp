@@ -17,7 +17,8 @@ void check_particle_count(const CaseNode& node, const std::array<double, 3>& alo
 // Throws InputError.
 void check_requests(const CaseNode& root, const Scene& scene);
 
-// Frames that the disk of the folder for the results does not hold. Throws InputError.
+// Frames that the disk of the folder for the results does not hold; those of an earlier run that are there will be
+// replaced. Of a new run: one that goes on has written its own. Throws InputError.
 void check_space(const Scene& scene, const std::filesystem::path& folder);
 
 }  // namespace tailrun::mpm

@@ -31,10 +31,9 @@ std::vector<double> segment_friction(const CaseNode& node, const TerrainInput& l
   constexpr double degrees_from = 10.0;  // a ground that holds what lies on it has 1
   const double largest = *std::max_element(friction.begin(), friction.end());
   if (largest > degrees_from && largest < 90.0)
-    add_warning(
-        fmt::format("terrain line '{}': friction {:g} is a coefficient, not an angle; were it meant in degrees, "
-                    "it would be {:.3g}",
-                    line.name, largest, std::tan(largest * M_PI / 180.0)));
+    node.warn("friction", fmt::format("{:g} on '{}' is a coefficient, not an angle; were it meant in degrees, it would "
+                                      "be {:.3g}",
+                                      largest, line.name, std::tan(largest * M_PI / 180.0)));
   return friction;
 }
 

@@ -65,15 +65,20 @@ class ExplicitSolver final : public Solver<Dim> {
         sleep_(options.sleep),
         water_(options.ponds),
         filling_(0.0) {
-    double mass = 0.0, volume = 0.0;
-    for (const double m : P_.mass) mass += m;
+    double mass = 0.0, volume = 0.0, lightest = 1e300;
+    for (const double m : P_.mass) {
+      mass += m;
+      lightest = std::min(lightest, m);
+    }
     for (const double v : P_.volume) volume += v;
     const auto count = static_cast<double>(std::max<std::size_t>(1, P_.count()));
     const double in_cell = std::max(1.0, count * std::pow(cell_size, Dim) / volume);
-    mass_cutoff_ =
-        (options.mass_cutoff < 0.0 ? Shape::mass_cutoff(options.courant, std::pow(in_cell, (Dim - 1.0) / Dim))
-                                   : options.mass_cutoff) *
-        mass / count;
+    // A particle alone in the middle of its cell must keep its nodes, or it would hang in the air.
+    const double of_lone = 0.9 * std::pow(0.5, Dim) * lightest;
+    mass_cutoff_ = options.mass_cutoff < 0.0
+                       ? std::min(of_lone, Shape::mass_cutoff(options.courant, std::pow(in_cell, (Dim - 1.0) / Dim)) *
+                                               mass / count)
+                       : options.mass_cutoff * mass / count;
     averaging_ = false;
     for (const auto& m : materials_) {
       constants_.push_back(constants_of(m, cell_size));
@@ -202,7 +207,8 @@ class ExplicitSolver final : public Solver<Dim> {
   };
   // How far material of a field is from the ground, at the nodes of a block near it.
   using NodeGaps = std::optional<std::array<Gap, block_nodes>>;
-  using NodeFlags = std::array<bool, block_nodes>;
+  // Fields, as bits, at the nodes of a block.
+  using NodeFields = std::array<std::uint8_t, block_nodes>;
   // The bodies that meet at a node, and which one each field belongs to (-1: the field is not there).
   struct NodeBodies {
     std::array<BodyAtNode<Dim>, most_fields> body;
@@ -303,7 +309,7 @@ class ExplicitSolver final : public Solver<Dim> {
   void drive_nodes(int f, std::size_t a, const Drive& drive, const NodeSums& node, GridSums<Dim>& sums);
   void gather_gaps(std::size_t a, NodeGaps* gap);
   void touch_boundaries(int f, std::size_t a, const Drive& drive, const NodeSums& node, const NodeGaps& gap,
-                        const NodeFlags& settled, GridSums<Dim>& sums);
+                        const NodeFields& settled, GridSums<Dim>& sums);
   unsigned fields_at(std::size_t a, int n, const NodeSums* node) const;
   NodeBodies bodies_at(std::size_t a, int n, unsigned there, const NodeSums* node) const;
   void set_motion(std::size_t node, BodyAtNode<Dim>& body) const;
@@ -317,7 +323,7 @@ class ExplicitSolver final : public Solver<Dim> {
   void rub_fields_of(std::size_t s);
   void brake_body(unsigned fields, std::size_t a, int n, double mass, const std::array<double, Dim>& dv,
                   GridSums<Dim>& sums);
-  void part_fields(std::size_t a, double dt, const NodeSums* node, const NodeGaps* gap, NodeFlags& settled,
+  void part_fields(std::size_t a, double dt, const NodeSums* node, const NodeGaps* gap, NodeFields& settled,
                    GridSums<Dim>& sums);
   void take_over(std::size_t a, int n, const NodeSums* node, const NodeBodies& bodies, GridSums<Dim>& sums);
   void settle_on_ground(std::size_t a, int n, double dt, const NodeSums* node, const NodeGaps* gap,

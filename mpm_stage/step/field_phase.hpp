@@ -167,10 +167,11 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::keep_grips(std::size_t a, int 
   }
 }
 
-// Contact at the shared nodes of block a, with the ground, too, where it is near: `settled` gets those nodes.
+// Contact at the shared nodes of block a, with the ground, too, where it is near: `settled` gets the fields for which
+// it is done.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::part_fields(std::size_t a, double dt, const NodeSums* node,
-                                                              const NodeGaps* gap, NodeFlags& settled,
+                                                              const NodeGaps* gap, NodeFields& settled,
                                                               GridSums<Dim>& sums) {
   constexpr unsigned both_sides = 0b101;
   const NodeContact* contact = ground_.of_block(a);
@@ -184,12 +185,12 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::part_fields(std::size_t a, dou
     if (!meeting[n] || !known) continue;
     NodeBodies bodies = bodies_at(a, n, there, node);
     auto pairs = contact_pairs(bodies, dt);
-    settled[n] = contact && contact[n].count > 0;
-    if (settled[n])
+    if (contact && contact[n].count > 0) {
+      settled[n] = static_cast<std::uint8_t>(there);
       settle_on_ground(a, n, dt, node, gap, contact[n], bodies, pairs, sums);
-    else
+    } else {
       settle(pairs);
-    for (ContactPair<Dim>& pair : pairs) pair.join();
+    }
     keep_grips(a, n, bodies, pairs);
     take_over(a, n, node, bodies, sums);
   }

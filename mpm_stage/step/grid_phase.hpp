@@ -109,7 +109,7 @@ GridSums<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::move_block(std::size_
       drive_nodes(f, a, drive, node[f], sums);
   }
   NodeGaps gap[most_fields];
-  NodeFlags settled{};
+  NodeFields settled{};
   if (ground_.of_block(a)) gather_gaps(a, gap);
   if (fields_.shared(a)) {
     clear_grips(a);
@@ -191,7 +191,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather_gaps(std::size_t a, Nod
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::touch_boundaries(int f, std::size_t a, const Drive& drive,
                                                                    const NodeSums& node, const NodeGaps& gap,
-                                                                   const NodeFlags& settled, GridSums<Dim>& sums) {
+                                                                   const NodeFields& settled, GridSums<Dim>& sums) {
   const double dt = drive.dt;
   const NodeContact* contact = ground_.of_block(a);
   for (int n = 0; n < block_nodes; ++n) {
@@ -205,7 +205,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::touch_boundaries(int f, std::s
     const std::array<double, Dim> pushed = v;
     if (contact && contact[n].count > 0) {
       NodeGrip& grip = grip_[k];
-      if (!settled[n]) grip = stop_approach<Dim>(contact[n], m, std::max(0.0, (*gap)[n].value) / dt, v);
+      if (!(settled[n] >> f & 1U)) grip = stop_approach<Dim>(contact[n], m, std::max(0.0, (*gap)[n].value) / dt, v);
       const double share = smoothing_share(dt * h1_ * fastest_wave_, dt * h1_ * sliding_speed<Dim>(contact[n], v));
       smooth_grip(contact[n], m, dt, share, smoothed_grip_[k], grip);
       grip.carried = grip.friction;

@@ -4,11 +4,11 @@
 // clay up to 19 % less beside the ground, which thins it and slows it down). At the centre of each patch stands what
 // its particles fill, as the nodes have it: mass over the patch's density, by the room that the shape function has
 // there above the ground. What it is above 1 is the patch's crowding: by so much the particles are smaller than their
-// volumes. So they give up, per unit of their own shear strain, a share of it as volumetric strain like any other:
-// volumes and stresses follow the material's law, and the pressure that comes of it drives the soil apart. Crowding is
-// made by strain, so it goes by strain, in the same proportion for any cell, step and speed; soil at rest is left
-// alone. The work of it (J, given to the particles as elastic energy) is counted apart: it is what soil set free as it
-// sank into itself.
+// volumes. So they give up, per unit of their own shear strain and as far as they are pressed, a share of it as
+// volumetric strain like any other: volumes and stresses follow the material's law, and the pressure that comes of it
+// drives the soil apart. Crowding is made by strain, so it goes by strain, in the same proportion for any cell, step
+// and speed; soil at rest is left alone. The work of it (J, given to the particles as elastic energy) is counted apart:
+// it is what soil set free as it sank into itself.
 //
 // Where all patches around are full too, crowding under 1 counts as well: single patches are up and down with the
 // particles that come and go, and to take one half of that alone would swell the soil. Beside a free surface only

@@ -77,6 +77,48 @@ TEST_CASE("a body on top of another passes its push on to the ground") {
   CHECK(!push[1].grip().pushed);
 }
 
+TEST_CASE("ground that soil adheres to holds a body, and what another one presses on it") {
+  NodeContact ground = level_ground();
+  ground.adhere = true;
+  auto held = body_at(-0.3, 0.0, 1.0, {2.0, 1.0}), other = body_at(0.3, 0.0, 1.0, {-3.0, 0.5});
+  std::array<BodyAtNode<2>, 2> body{held, other};
+  ContactPairs<2> pairs;
+  pairs.add(ContactPair<2>(body[0], body[1], {}, h, dt, half), 0, 1);
+  std::array<GroundPush<2>, 2> push{GroundPush<2>(ground, 1.0, 0.0), GroundPush<2>(ground, 1.0, 1e9)};
+  settle(pairs, body.data(), push.data(), 2);
+  CHECK(body[0].v == std::array<double, 2>{0.0, 0.0});
+  CHECK(body[1].v[0] == doctest::Approx(0.0).scale(1.0).epsilon(1e-5));
+  CHECK(body[1].v[1] == 0.5);
+  CHECK(push[0].impulse()[0] == doctest::Approx(-2.0 + 3.0));
+}
+
+TEST_CASE("soils mixed through each other move as one, and not into the ground although one is still above it") {
+  const NodeContact ground = level_ground();
+  std::array<BodyAtNode<2>, 2> body{body_at(0.0, 0.0, 1.0, {1.0, -1.0}), body_at(0.001, 0.0, 3.0, {0.0, -2.0})};
+  ContactPairs<2> pairs;
+  pairs.add(ContactPair<2>(body[0], body[1], {}, h, dt, half), 0, 1);
+  std::array<GroundPush<2>, 2> push{GroundPush<2>(ground, 1.0, 0.0), GroundPush<2>(ground, 3.0, 1e9)};
+  settle(pairs, body.data(), push.data(), 2);
+  CHECK(body[0].v[0] == doctest::Approx(0.25));
+  CHECK(body[1].v[0] == doctest::Approx(0.25));
+  CHECK(std::fabs(body[0].v[1]) < 1e-12);
+  CHECK(body[1].v[1] == doctest::Approx(0.0).scale(1.0).epsilon(0.001));
+}
+
+TEST_CASE("a thin layer between two bodies passes a push on, down to the ground") {
+  const NodeContact ground = level_ground();
+  std::array<BodyAtNode<2>, 3> body{body_at(0.0, -0.6, 2.0, {0.0, 0.0}), body_at(0.0, 0.0, 0.5, {0.0, 0.0}),
+                                    body_at(0.0, 0.6, 2.0, {0.0, -1.0})};
+  ContactPairs<2> pairs;
+  pairs.add(ContactPair<2>(body[0], body[1], {}, h, dt, half), 0, 1);
+  pairs.add(ContactPair<2>(body[1], body[2], {}, h, dt, half), 1, 2);
+  std::array<GroundPush<2>, 3> push{GroundPush<2>(ground, 2.0, 0.0), GroundPush<2>(ground, 0.5, 1e9),
+                                    GroundPush<2>(ground, 2.0, 1e9)};
+  settle(pairs, body.data(), push.data(), 3);
+  for (const BodyAtNode<2>& b : body) CHECK(std::fabs(b.v[1]) < 0.02);
+  CHECK(push[0].impulse()[1] == doctest::Approx(2.0).epsilon(0.03));
+}
+
 TEST_CASE("whatever meets on the ground: no energy is made, nothing goes into it, momentum comes from it alone") {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> some(-1.0, 1.0), mass(0.1, 10.0);

@@ -47,7 +47,47 @@ double fastest(double beyond, double courant, double cutoff) {
   return most;
 }
 
+// m/s, of a particle alone in the middle of its cell beside a heavy block, after falling for a second.
+template <int Dim>
+double speed_of_lone() {
+  constexpr double h = 1.0;
+  constexpr std::size_t block = 1 << Dim;
+  Particles<Dim> P;
+  P.resize(block + 1, true, false);
+  for (std::size_t p = 0; p < P.count(); ++p) {
+    for (int d = 0; d < Dim; ++d) P.position[d][p] = p == block ? 20.5 : 10.25 + 0.5 * static_cast<double>(p >> d & 1);
+    P.volume[p] = std::pow(0.5 * h, Dim);
+    P.mass[p] = (p == block ? 1000.0 : 4000.0) * P.volume[p];
+    P.identity[p] = static_cast<std::int32_t>(p);
+  }
+  Material rubber;
+  rubber.name = "rubber";
+  rubber.law = &law_named("linear_elastic");
+  rubber.youngs_modulus = 1e7;
+  rubber.poisson_ratio = 0.3;
+  SolverOptions o;
+  o.shape = ShapeName::linear;
+  const Terrain none;
+  const auto s = make_solver<Dim>(o, h, {}, std::move(P), {rubber}, none, Walls<Dim>{});
+  s->start(1e30);
+  std::array<double, Dim> gravity{};
+  gravity[1] = -10.0;
+  for (double time = 0.0; time < 1.0;) {
+    const double dt = s->next_dt();
+    s->step(gravity, {}, 1.0 - time - dt);
+    time += dt;
+  }
+  for (std::size_t p = 0; p < s->particles().count(); ++p)
+    if (s->particles().identity[p] == static_cast<std::int32_t>(block)) return s->particles().velocity[1][p];
+  return 0.0;
+}
+
 }  // namespace
+
+TEST_CASE("linear shape functions: a light particle alone in its cell falls") {
+  CHECK(speed_of_lone<2>() == doctest::Approx(-10.0).epsilon(0.02));
+  CHECK(speed_of_lone<3>() == doctest::Approx(-10.0).epsilon(0.02));
+}
 
 TEST_CASE("linear shape functions: a block whose sides lie on or just over lines of nodes stays as slow as it began") {
   for (const double courant : {0.25, 0.5})

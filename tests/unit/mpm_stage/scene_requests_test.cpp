@@ -69,10 +69,10 @@ TEST_CASE("frames that the disk does not hold are refused with the space that is
   scene.output.frame_interval = 1e-6;
   scene.particles.mass.assign(1000000, 1.0);
   scene.particles.position.assign(3000000, 0.0);
-  CHECK_THROWS_WITH_AS(check_space(scene, "/tmp"), doctest::Contains("of 1000000 particles take 5e+04 GB or more"),
-                       InputError);
+  CHECK_THROWS_WITH_AS(check_space(scene, std::filesystem::temp_directory_path()),
+                       doctest::Contains("of 1000000 particles take 5e+04 GB or more"), InputError);
   scene.output.frame_interval = 0.0;
-  CHECK_NOTHROW(check_space(scene, "/tmp"));
+  CHECK_NOTHROW(check_space(scene, std::filesystem::temp_directory_path()));
 }
 
 TEST_CASE("a friction in degrees is warned of with its tangent") {
