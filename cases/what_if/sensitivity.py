@@ -27,10 +27,15 @@ class Index:
     total_interval: tuple
 
 
+def varied(table):
+    """The parameters of more than one value; with one alone a sweep fixes what is the same for all its members."""
+    return [p for p in table.parameters if len({repr(value) for value in table.values[p["name"]]}) > 1]
+
+
 def columns_of(table, chosen):
     """[(name, numeric, (members, k) columns)]: a parameter's values, or for words one column for each word but the first."""
     found = []
-    for p in table.parameters:
+    for p in varied(table):
         values = [value for value, use in zip(table.values[p["name"]], chosen) if use]
         if p["numeric"]:
             found.append((p["name"], True, np.array(values, float)[:, None]))

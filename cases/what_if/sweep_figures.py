@@ -84,11 +84,10 @@ def tornado(axis, table, headline):
 
 def indices(axis, table, headline):
     found, said = sensitivity.sobol(table, headline.name)
-    names = [p["name"].replace("_", " ") for p in table.parameters]
-    rows = np.arange(len(names))
     if found is not None:
         found = sorted(found, key=lambda index: index.total)
         names = [index.name.replace("_", " ") for index in found]
+        rows = np.arange(len(names))
         for offset, colour, label, parts in ((0.18, BLUE, "first order", [(i.first, i.first_interval) for i in found]),
                                              (-0.18, RED, "total", [(i.total, i.total_interval) for i in found])):
             value = np.array([part[0] for part in parts])
@@ -102,6 +101,7 @@ def indices(axis, table, headline):
             axis.set_axis_off()
             return
         names = [effect.name.replace("_", " ") for effect in effects]
+        rows = np.arange(len(names))
         axis.barh(rows, [effect.share for effect in effects], height=0.6, color=BLUE)
         axis.set(title=f"{headline.label}: first-order shares by regression", xlabel=f"$b_i^2$ var($x_i$) / var(y); explained together: {explained:.2f}")
     axis.set_yticks(rows, names)
@@ -155,8 +155,9 @@ def profiles(plt, table, output):
 def scatter(plt, table, output):
     """One row of panels a headline number, at most five parameters a row."""
     headlines, most = shown_headlines(table), 5
-    rows = [(headline, table.parameters[k:k + most]) for k in range(0, len(table.parameters), most) for headline in headlines]
-    columns = min(len(table.parameters), most)
+    varied = sensitivity.varied(table) or table.parameters
+    rows = [(headline, varied[k:k + most]) for k in range(0, len(varied), most) for headline in headlines]
+    columns = min(len(varied), most)
     figure, axes = plt.subplots(len(rows), columns, figsize=(style.WIDTH, 3.2 * len(rows)), squeeze=False, sharey="row")
     for axis_row, (headline, parameters) in zip(axes, rows):
         values = table.numbers[headline.name] * headline.factor

@@ -49,6 +49,8 @@ linear = table("latin_hypercube", x, 3 * x[:, 0] - 2 * x[:, 1] + np.array([4.0 i
 effects, explained = sensitivity.regression(linear, "runout_m")
 assert abs(explained - 1) < 1e-12 and np.allclose([effects[0].low, effects[0].high], [-1.2, 1.2], atol=0.02), effects
 assert np.allclose([effects[2].low, effects[2].high], [-2, 2]) and abs(effects[1].share / effects[0].share - 4 / 9) < 0.02, effects
+fixed = table("latin_hypercube", np.c_[x, np.full(200, 120.0)], x[:, 0])  # the third is the same in all members
+assert [effect.name for effect in sensitivity.regression(fixed, "runout_m")[0]] == ["x1", "x2"]
 assert "too few" in sensitivity.regression(table("sobol", x[:4], x[:4, 0]), "runout_m")[1]
 assert "the same in all" in sensitivity.regression(table("sobol", x, np.ones(200)), "runout_m")[1]
 
@@ -71,4 +73,6 @@ with tempfile.TemporaryDirectory() as name:
     picture = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else f"{name}/sensitivity.png")
     figures.sensitivities(style.pyplot(), ishigami, picture)
     assert picture.stat().st_size > 10000
+    figures.sensitivities(style.pyplot(), fixed, pathlib.Path(name) / "fixed.png")
+    figures.scatter(style.pyplot(), fixed, pathlib.Path(name) / "scatter.png")
 print("indices, regression, bands and volumes are what they are known to be")
