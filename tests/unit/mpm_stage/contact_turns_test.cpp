@@ -77,6 +77,18 @@ TEST_CASE("a body on top of another passes its push on to the ground") {
   CHECK(!push[1].grip().pushed);
 }
 
+TEST_CASE("a body that another one lifts off the ground has got nothing from the ground") {
+  const NodeContact ground = level_ground();
+  std::array<BodyAtNode<2>, 2> body{body_at(0.0, -0.3, 1.0, {0.0, 2.0}), body_at(0.0, 0.3, 1.0, {0.0, -1.0})};
+  ContactPairs<2> pairs;
+  pairs.add(ContactPair<2>(body[0], body[1], {}, h, dt, half), 0, 1);
+  std::array<GroundPush<2>, 2> push{GroundPush<2>(ground, 1.0, 0.0), GroundPush<2>(ground, 1.0, 0.0)};
+  settle(pairs, body.data(), push.data(), 2);
+  for (const BodyAtNode<2>& b : body) CHECK(b.v[1] == doctest::Approx(0.5).epsilon(1e-4));
+  CHECK(!push[0].grip().pushed);
+  CHECK(push[1].impulse()[1] == doctest::Approx(0.0).scale(1.0).epsilon(1e-4));
+}
+
 TEST_CASE("ground that soil adheres to holds a body, and what another one presses on it") {
   NodeContact ground = level_ground();
   ground.adhere = true;
