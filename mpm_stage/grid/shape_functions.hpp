@@ -5,11 +5,8 @@
 //   w[k] weight,  d[k] derivative with respect to X,  m[k] = w[k] (k - X) first moment.
 // `shift`: a point belongs to the block that holds floor(X + shift). `apic`: D^-1 h^2 of the affine velocity (Jiang et
 // al. 2015, section 5.3), 0 where D is not a constant; then the velocity gradient takes the place of the affine matrix.
-// `mass_cutoff(courant, beside)`: nodes with less than this share of a particle's mass are left out. Where the squared
-// slope over the weight has no bound as the weight goes to 0 (linear), lighter nodes are thrown about by ever larger
-// accelerations: at the side of a body a node holds the share w of each of the `beside` particles of a cell's face,
-// volume V each, and swings with k / m = beside V E / h^2 / (beside w V rho) = c^2 / (w h^2). Steps of courant h / c
-// are stable for sqrt(k / m) dt <= 2, that is for w >= courant^2 / 4.
+// `mass_cutoff`: nodes with less than this share of a particle's mass are left out. Where the squared slope over the
+// weight has no bound as the weight goes to 0 (linear, GIMP), such nodes are thrown about by ever larger accelerations.
 #pragma once
 
 #include <cmath>
@@ -23,7 +20,7 @@ struct LinearShape {
   static constexpr int support = 2;
   static constexpr double shift = 0.0;
   static constexpr double apic = 0.0;
-  static constexpr double mass_cutoff(double courant, double beside) { return 0.25 * courant * courant * beside; }
+  static constexpr double mass_cutoff = 1e-6;
 
   template <class Real>
   [[gnu::always_inline]] static inline auto evaluate(Real X, Real* w, Real* d, Real* m) {
@@ -45,7 +42,7 @@ struct QuadraticShape {
   static constexpr int support = 3;
   static constexpr double shift = 0.5;
   static constexpr double apic = 4.0;
-  static constexpr double mass_cutoff(double /*courant*/, double /*beside*/) { return 1e-18; }
+  static constexpr double mass_cutoff = 1e-18;
 
   template <class Real>
   [[gnu::always_inline]] static inline auto evaluate(Real X, Real* w, Real* d, Real* m) {
@@ -70,7 +67,7 @@ struct CubicShape {
   static constexpr int support = 4;
   static constexpr double shift = 0.0;
   static constexpr double apic = 3.0;
-  static constexpr double mass_cutoff(double /*courant*/, double /*beside*/) { return 1e-18; }
+  static constexpr double mass_cutoff = 1e-18;
 
   template <class Real>
   [[gnu::always_inline]] static inline auto evaluate(Real X, Real* w, Real* d, Real* m) {
@@ -95,7 +92,7 @@ struct GimpShape {
   static constexpr int support = 3;
   static constexpr double shift = 0.5;
   static constexpr double apic = 0.0;
-  static constexpr double mass_cutoff(double /*courant*/, double /*beside*/) { return 1e-8; }
+  static constexpr double mass_cutoff = 1e-8;
 
   // Four particles, one after the other: the pieces of the function differ from lane to lane.
   static inline Int4 evaluate(Vec4 X, Vec4* w, Vec4* d, Vec4* m) {

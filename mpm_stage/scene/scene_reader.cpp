@@ -80,7 +80,7 @@ void read_scheme(const CaseNode& root, Scene& scene) {
   o.soil_limits_friction = scheme.boolean_or("soil_limits_friction", true);
   o.contact_reach = scheme.number_or("contact_reach", "cells", Range::between(0.0, 1.0), o.contact_reach);
   if (const auto share = scheme.number_if("surface_share", "1", Range::between(0.0, 0.2))) o.surface_share = *share;
-  if (const auto cutoff = scheme.number_if("mass_cutoff", "1", Range::between(0.0, 0.2))) o.mass_cutoff = *cutoff;
+  if (const auto cutoff = scheme.number_if("mass_cutoff", "1", Range::between(0.0, 0.1))) o.mass_cutoff = *cutoff;
   o.local_damping = root.object_or_empty("damping").number_or("local", "1", Range::between(0.0, 0.99), 0.0);
   if (o.local_damping > 0.0 && o.transfer == TransferName::fmpm)
     root.fail("damping/local",

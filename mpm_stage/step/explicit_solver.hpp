@@ -65,20 +65,10 @@ class ExplicitSolver final : public Solver<Dim> {
         sleep_(options.sleep),
         water_(options.ponds),
         filling_(0.0) {
-    double mass = 0.0, volume = 0.0, lightest = 1e300;
-    for (const double m : P_.mass) {
-      mass += m;
-      lightest = std::min(lightest, m);
-    }
-    for (const double v : P_.volume) volume += v;
-    const auto count = static_cast<double>(std::max<std::size_t>(1, P_.count()));
-    const double in_cell = std::max(1.0, count * std::pow(cell_size, Dim) / volume);
-    // A particle alone in the middle of its cell must keep its nodes, or it would hang in the air.
-    const double of_lone = 0.9 * std::pow(0.5, Dim) * lightest;
-    mass_cutoff_ = options.mass_cutoff < 0.0
-                       ? std::min(of_lone, Shape::mass_cutoff(options.courant, std::pow(in_cell, (Dim - 1.0) / Dim)) *
-                                               mass / count)
-                       : options.mass_cutoff * mass / count;
+    double mass = 0.0;
+    for (const double m : P_.mass) mass += m;
+    mass_cutoff_ = (options.mass_cutoff < 0.0 ? Shape::mass_cutoff : options.mass_cutoff) * mass /
+                   static_cast<double>(std::max<std::size_t>(1, P_.count()));
     averaging_ = false;
     for (const auto& m : materials_) {
       constants_.push_back(constants_of(m, cell_size));
