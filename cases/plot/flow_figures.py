@@ -43,9 +43,11 @@ def plot_profile(plt, flow, marks, end, output):
     axes[1].fill_between(flow.x, 0.0, flow.depth, step="mid", color="C3", alpha=0.4)
     axes[1].set(ylabel="flow depth (m)", xlabel="x (m)")
     for axis in axes:
-        axis.axvline(marks.toe, color="0.3", lw=0.8, ls=":")
         axis.grid(alpha=0.3)
-    axes[1].text(marks.toe, axes[1].get_ylim()[1], " toe before", va="top", fontsize=9)
+        if marks.toe is not None and marks.along_x:
+            axis.axvline(marks.toe, color="0.3", lw=0.8, ls=":")
+    if marks.toe is not None and marks.along_x:
+        axes[1].text(marks.toe, axes[1].get_ylim()[1], " toe before", va="top", fontsize=9)
     axes[0].legend(loc="best", fontsize=9)
     style.save(figure, output)
 

@@ -82,13 +82,7 @@ const FrontRow& FrontSeries<Dim>::sample(double time, const Particles<Dim>& P) {
     row.centre_y += P.mass[p] * P.position[1][p];
     row.top = std::max(row.top, P.position[1][p]);
     scratch_.emplace_back(output_.front_sign * P.position[output_.front_axis][p], P.mass[p]);
-    double moved2 = 0.0;
-    for (int d = 0; d < Dim; ++d) {
-      const double u =
-          P.position[d][p] - start_[3 * static_cast<std::size_t>(P.identity[p]) + static_cast<std::size_t>(d)];
-      moved2 += u * u;
-    }
-    if (moved2 > output_.flow_distance * output_.flow_distance) {
+    if (has_flowed<Dim>(P, p, start_, output_.flow_distance)) {
       flowed_.push_back(scratch_.back());
       row.flowed_mass += P.mass[p];
     }

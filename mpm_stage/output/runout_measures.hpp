@@ -19,6 +19,18 @@ namespace tailrun::mpm {
 // By material, whether it counts: all that are not linear elastic, unless everything is.
 std::vector<bool> moving_materials(const Scene& scene);
 
+// Whether particle p is farther than `distance` (m) from where it started; `start` (n, 3), m, by identity.
+template <int Dim>
+bool has_flowed(const Particles<Dim>& P, std::size_t p, const std::vector<double>& start, double distance) {
+  double moved2 = 0.0;
+  for (int d = 0; d < Dim; ++d) {
+    const double u =
+        P.position[d][p] - start[3 * static_cast<std::size_t>(P.identity[p]) + static_cast<std::size_t>(d)];
+    moved2 += u * u;
+  }
+  return moved2 > distance * distance;
+}
+
 // Positions before the motion began: of particles that carry a displacement, less that; (n, 3), m.
 std::vector<double> positions_before(const ParticleSet& set);
 

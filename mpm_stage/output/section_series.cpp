@@ -52,13 +52,7 @@ void SectionSeries::sample(double time, const Particles<Dim>& P) {
         state.volume -= start_volume_[static_cast<std::size_t>(P.identity[p])];
       }
       if (std::fabs(ahead) > cell_) continue;
-      double moved2 = 0.0;
-      for (int d = 0; d < Dim; ++d) {
-        const double u =
-            P.position[d][p] - start_[3 * static_cast<std::size_t>(P.identity[p]) + static_cast<std::size_t>(d)];
-        moved2 += u * u;
-      }
-      if (moved2 <= flow_distance_ * flow_distance_) continue;
+      if (!has_flowed<Dim>(P, p, start_, flow_distance_)) continue;
       state.area += P.volume[p] / (2.0 * cell_);
       state.discharge += sign_ * P.velocity[axis_][p] * P.volume[p] / (2.0 * cell_);
     }

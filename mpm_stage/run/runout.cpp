@@ -119,11 +119,12 @@ class Runout {
                           f.flowed_mass / 1e3, scene_.output.flow_distance, front_.runout(f.flow_front), front_.toe())
             : fmt::format("nothing moved by more than {:g} m", scene_.output.flow_distance);
     // What a reader has to know before the runout: whether it is one.
-    const bool moves = record_.stop_reason == "end time" && f.rms_speed > scene_.rest.speed;
-    const std::string motion =
-        moves ? fmt::format(", soil still in motion (root mean square {:.2g} m/s, the flow's front {:.2g} m/s)",
-                            f.rms_speed, front_.front_speed(scene_.rest.duration))
-              : "";
+    std::string motion;
+    if (record_.stop_reason == "end time" && f.rms_speed > scene_.rest.speed) {
+      const double front = front_.front_speed(scene_.rest.duration);
+      motion = fmt::format(", soil still in motion (root mean square {:.2g} m/s{})", f.rms_speed,
+                           std::isfinite(front) ? fmt::format(", the flow's front {:.2g} m/s", front) : "");
+    }
     const double turnover = std::max(ledger_.turnover(), 1e-300);
     fmt::print(
         "{}: {} after {:.3f} s{}, {} steps; {}; of {:.4g} J turned over the scheme lost "
