@@ -2,7 +2,7 @@
 // with the ground (ground_push.hpp).
 //
 // They have to be solved as one. Were the bodies parted first, a light node that the soil above drives into the ground
-// would push its neighbour aside, and itself off it, with every step: 20 MJ in a second in the Mochikoshi case on cells
+// would push its neighbour aside, and itself off it, with every step: 6 MJ a second in the Mochikoshi case on cells
 // of 4 m. Were the ground first and last, a body that another one presses on it would not pass on the push.
 #pragma once
 
