@@ -238,3 +238,50 @@ TEST_CASE("weak soil that slides on strong soil: momentum is exact, and bits do 
     CHECK(x[0] == x[1]);
   }
 }
+
+TEST_CASE("soils in strips that slide together are braked by the ground with its friction on all of their weight") {
+  constexpr double friction = 0.3, gravity = 9.81, density = 2000.0, spacing = 0.25, speed = 3.0;
+  constexpr std::size_t columns = 64, rows = 8;
+  std::vector<Material> materials(2);
+  materials[0].name = "strong";
+  materials[0].law = &law_named("linear_elastic");
+  materials[1].name = "weak";
+  materials[1].law = &law_named("tresca");
+  for (Material& m : materials) {
+    m.youngs_modulus = 1e7;
+    m.poisson_ratio = 0.3;
+  }
+  Particles<2> P;
+  P.resize(columns * rows, true, false);
+  for (std::size_t p = 0; p < P.count(); ++p) {
+    const std::size_t column = p % columns;
+    P.position[0][p] = spacing * (static_cast<double>(column) + 0.5);
+    P.position[1][p] = spacing * (static_cast<double>(p / columns) + 0.5);
+    P.volume[p] = spacing * spacing;
+    P.mass[p] = density * P.volume[p];
+    P.material[p] = column / 4 % 2 == 0 ? 0 : 1;  // strips of 1 m, two cells: nearly all nodes are shared
+    P.strength[p] = 1e6;
+    P.velocity[0][p] = speed;
+    P.identity[p] = static_cast<std::int32_t>(p);
+    P.stress[1][p] = -density * gravity * (spacing * static_cast<double>(rows) - P.position[1][p]);
+    P.stress[0][p] = P.stress[2][p] = 0.43 * P.stress[1][p];
+  }
+  SolverOptions o;
+  o.fields.of_material = {0, 1};
+  o.fields.count = 2;
+  o.fields.flows = {0, 1};
+  o.soil_limits_friction = false;
+  Terrain ground;
+  ground.add_line({{{-100.0, 0.0}}, {{100.0, 0.0}}}, {friction}, false);
+  const auto solver = make_solver<2>(o, h, {}, std::move(P), materials, ground, Walls<2>{});
+  solver->start(1e300);
+  double time = 0.0;
+  while (time < 0.5) time += solver->step({0.0, -gravity}, {}, 1e300).dt;
+  const Particles<2>& Q = solver->particles();
+  double momentum = 0.0, mass = 0.0;
+  for (std::size_t p = 0; p < Q.count(); ++p) {
+    momentum += Q.mass[p] * Q.velocity[0][p];
+    mass += Q.mass[p];
+  }
+  CHECK(momentum / mass == doctest::Approx(speed - friction * gravity * time).epsilon(0.02));
+}
