@@ -42,8 +42,12 @@ constexpr double open_gap = 0.15;
 // whose surface is 0.7 cells away lies there.
 constexpr double rim = 0.9;
 
+// plainness() of a surface that is none of a corner or a thin plate; stairs of particles have 0.98 and more.
+constexpr double plain = 0.9;
+
 // The surface of a field at a node and those around it: sums of G and of its size, nearer nodes counting more. A single
-// node's G wobbles with the particles' places, and bodies would slide as over a washboard.
+// node's G wobbles with the particles' places, and bodies would slide as over a washboard: a slab of soft clay on a
+// plane of firm particles, at 8 degrees to the grid, three quarters as far as along it.
 template <int Dim>
 struct SurfaceAround {
   std::array<double, Dim> outward{};  // m2
@@ -64,7 +68,7 @@ struct BodyAtNode {
   double strength = 0.0;  // Pa
   bool firm = false;      // soil that does not flow: its particles show its surface best
 
-  // 1 where the surface around the node is a plane, less at corners and of thin plates.
+  // 1 where the surface around the node is a plane, less at corners (0.7 where it turns by 90 deg) and of thin plates.
   double plainness() const {
     double square = 0.0;
     for (const double x : outward) square += x * x;
@@ -124,10 +128,10 @@ class ContactPair {
     // such bodies the one whose surface is the plainer (a corner of the other is none).
     const bool of_i = i.firm && (!j.firm || i.plainness() >= j.plainness());
     // Beside soil that flows, firm layers are often thinner than the nodes around reach, which would tilt them.
-    if (i.firm && j.firm)
-      take_normal_of(of_i ? i.outward : j.outward, of_i ? 1.0 : -1.0);
-    else if (i.firm || j.firm)
-      take_normal_of(of_i ? i.surface : j.surface, of_i ? 1.0 : -1.0);
+    const BodyAtNode<Dim>& shows = of_i ? i : j;
+    if (shows.firm)
+      take_normal_of((i.firm && j.firm) || shows.plainness() > plain ? shows.outward : shows.surface,
+                     of_i ? 1.0 : -1.0);
     // Inside soil that flows, the node's velocity differs from that of the surface by what the soil strains in between;
     // what is there of the firm body is the rim of its reach, and must not be taken along.
     if (i.firm != j.firm) presses_ = std::fabs(along<Dim>(i.firm ? i.centre : j.centre, n_)) <= rim * h;

@@ -305,6 +305,7 @@ class ExplicitSolver final : public Solver<Dim> {
   void set_motion(std::size_t node, BodyAtNode<Dim>& body) const;
   void join_sides(std::size_t a, int n, const NodeSums* node, GridSums<Dim>& sums);
   void gather_interfaces();
+  void smooth_surfaces();
   SurfaceAround<Dim> surface_around(int f, std::size_t a, int n) const;
   ContactPairs<Dim> contact_pairs(NodeBodies& bodies, double dt) const;
   void clear_grips(std::size_t a);
@@ -377,6 +378,7 @@ class ExplicitSolver final : public Solver<Dim> {
   AlignedVector<Vec4> sums_, force_sums_;         // per active block, only with mirrors
   AlignedVector<InterfaceNode> interface_tiles_;  // per occupied block, only with several fields
   AlignedVector<InterfaceNode> interfaces_;       // per block that several fields reach
+  std::vector<SurfaceAround<Dim>> surfaces_;      // the same
   std::vector<std::uint8_t> meeting_;  // per active block: nodes at which fields met in the last step; several fields
   HalfSpaces<Shape> half_spaces_;
   // Per pair of fields and per block that several fields reach.
@@ -423,6 +425,7 @@ class ExplicitSolver final : public Solver<Dim> {
 #include "mpm_stage/step/explicit_solver_upkeep.hpp"
 #include "mpm_stage/step/field_friction_phase.hpp"
 #include "mpm_stage/step/field_phase.hpp"
+#include "mpm_stage/step/field_surfaces.hpp"
 #include "mpm_stage/step/grid_phase.hpp"
 #include "mpm_stage/step/mass_filter.hpp"
 

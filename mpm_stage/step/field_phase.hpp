@@ -6,33 +6,6 @@
 
 namespace tailrun::mpm {
 
-// The surfaces of the materials in block b, for contact: of particles that reach nodes at which fields met in the last
-// step. A node where they meet for the first time has a trace of the one, and waits for the next.
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::scatter_interfaces(std::size_t b) {
-  constexpr int S = Shape::support, T = Tile<Dim, Shape>::side;
-  std::uint8_t meet[tile_nodes], wanted[tile_nodes];
-  load_tile<Dim, Shape>(grid_, b, meeting_.data(), meet);
-  for (int n = 0; n < tile_nodes; ++n) {
-    int last = n;  // of the nodes of a particle whose first one is n
-    std::uint8_t any = 0;
-    for (int l = 0; l < (Dim == 3 ? S : 1); ++l)
-      for (int j = 0; j < S; ++j)
-        for (int i = 0; i < S; ++i) {
-          last = n + (l * T + j) * T + i;
-          if (last < tile_nodes) any |= meet[last];
-        }
-    wanted[n] = any;
-  }
-  int field = -1;
-  for (const Run& run : grid_.runs(b)) {
-    InterfaceNode* tile = interface_tiles_.data() + fields_.tile(run.field, b) * tile_nodes;
-    if (run.field != field) std::fill_n(tile, tile_nodes, InterfaceNode{});
-    field = run.field;
-    scatter_interface<Dim, Shape>(constants_[run.material], P_, run.begin, run.end, corner(b), h1_, wanted, tile);
-  }
-}
-
 // Which fields have more than a trace of the mass at node n of active block a, as bits. Where a field has less,
 // particles feel no more than that share of its velocity.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
@@ -56,9 +29,8 @@ typename ExplicitSolver<Dim, Shape, Split, Transfer>::NodeBodies ExplicitSolver<
     if (!(there >> f & 1U)) continue;
     BodyAtNode<Dim>& body = bodies.body[bodies.count];
     const bool firm = options_.fields.firm(f);
-    // With sides no two firm bodies meet, and of others contact does not ask.
     body = body_at_node<Dim>(node[f].sum[n][0], interfaces_[interface_of(f, a) + static_cast<std::size_t>(n)],
-                             firm && !options_.fields.by_side ? surface_around(f, a, n) : SurfaceAround<Dim>{});
+                             firm ? surface_around(f, a, n) : SurfaceAround<Dim>{});
     body.firm = firm;
     set_motion(node_of(f, a) + static_cast<std::size_t>(n), body);
     bodies.of_field[f] = bodies.count++;
@@ -95,46 +67,6 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::join_sides(std::size_t a, int 
   set_motion(node_of(2, a) + static_cast<std::size_t>(n), upper);
   bodies.body[0].add(upper);
   take_over(a, n, node, bodies, sums);
-}
-
-// The surfaces of the fields at the nodes at which they met in the last step.
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::gather_interfaces() {
-  const std::vector<std::size_t>& blocks = fields_.shared_blocks();
-#pragma omp parallel for schedule(dynamic, 4)
-  for (std::size_t s = 0; s < blocks.size(); ++s) {
-    const std::uint8_t* met = meeting_.data() + blocks[s] * block_nodes;
-    const bool any = std::any_of(met, met + block_nodes, [](std::uint8_t m) { return m != 0; });
-    for (int f = 0; f < fields_.count(); ++f) {
-      InterfaceNode* node = interfaces_.data() + interface_of(f, blocks[s]);
-      if (any && fields_.present(f, blocks[s]))
-        gather_tiles<Dim, Shape>(fields_.around(f, blocks[s]),
-                                 interface_tiles_.data() + fields_.tile(f, 0) * tile_nodes, node);
-      for (int n = 0; n < block_nodes; ++n)
-        if (!met[n] || !any) node[n] = InterfaceNode{};  // its sums are not whole
-    }
-  }
-}
-
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-SurfaceAround<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::surface_around(int f, std::size_t a, int n) const {
-  const auto& around = fields_.shared_around(static_cast<std::size_t>(fields_.shared_number(a)));
-  const InterfaceNode* nodes = interfaces_.data() + interface_of(f, fields_.shared_blocks()[0]);
-  SurfaceAround<Dim> surface;
-  for (int s = 0; s < Block<Dim>::neighbours; ++s) {
-    const auto step = neighbour_step<Dim>(s);
-    const auto k = node_beside<Dim>(around, n, step);
-    if (k < 0) continue;
-    double weight = 1.0, square = 0.0;
-    for (int d = 0; d < Dim; ++d) {
-      const double face = nodes[k].second[1 + d];
-      square += face * face;
-      weight *= step[d] == 0 ? 2.0 : 1.0;
-    }
-    for (int d = 0; d < Dim; ++d) surface.outward[d] += weight * nodes[k].second[1 + d];
-    surface.faces += weight * std::sqrt(square);
-  }
-  return surface;
 }
 
 // The contacts between the bodies of a node, at which the pairs point.

@@ -12,7 +12,10 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
   const auto since = Clock::now();
   const Drive drive = drive_of(dt, body, inertial);
   if (needs_all_sums()) complete_sums();
-  if (fields_.several()) gather_interfaces();
+  if (fields_.several()) {
+    gather_interfaces();
+    smooth_surfaces();
+  }
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t a = 0; a < grid_.active(); ++a) grid_sums_[a] = still(a) ? rest_block(a) : move_block(a, drive);
   if (fields_.several()) rub_fields(dt);

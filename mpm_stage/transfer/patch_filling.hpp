@@ -13,6 +13,11 @@
 // Where all patches around are full too, crowding under 1 counts as well: single patches are up and down with the
 // particles that come and go, and to take one half of that alone would swell the soil. Beside a free surface only
 // what is above `noise` counts: there nothing tells room that is empty from soil that is loose.
+//
+// Where soils with velocity fields of their own meet, only what is above `overlap` counts. They get into each other by
+// the width that the grid does not resolve (a slab that slides along a plane bed by some 0.15), and whatever is driven
+// out of that comes back as they slide on: work without end, which drives the soil. On cells of 1 m in the Mochikoshi
+// case 113 MJ instead of 192 go into it within 60 s, and 4.0 instead of 3.4 % of the soil are hidden.
 #pragma once
 
 #include <algorithm>
@@ -37,7 +42,8 @@ class PatchFilling {
   bool active() const { return relief_ > 0.0; }
   double relief() const { return relief_; }
   std::size_t bytes() const {
-    return beside_.capacity() * sizeof(beside_[0]) + 3 * room_.capacity() * sizeof(double) + weighed_.capacity();
+    return beside_.capacity() * sizeof(beside_[0]) + 3 * room_.capacity() * sizeof(double) + soils_.capacity() +
+           weighed_.capacity();
   }
 
   // After each sort. share_above(a, n) is the share of the shape function of node n of active block a that lies above
@@ -56,6 +62,7 @@ class PatchFilling {
       }
     }
     mass_.assign(room_.size(), 0.0);
+    soils_.assign(room_.size(), 0);
     filling_.assign(room_.size(), unknown);
     weighed_.assign(grid.active(), Weighed::never);
   }
@@ -65,10 +72,15 @@ class PatchFilling {
   void begin(std::size_t a, bool at_rest) {
     weighed_[a] = at_rest ? Weighed::at_rest : Weighed::moving;
     std::fill_n(mass_.data() + a * patches, patches, 0.0);
+    std::fill_n(soils_.data() + a * patches, patches, std::uint8_t{0});
   }
   // Adds the masses (first lane, kg) of a field's nodes.
   void weigh(std::size_t a, const Vec4* sum) {
-    for (int k = 0; k < patches; ++k) mass_[number(a, k)] += sum[centre(k)][0];
+    for (int k = 0; k < patches; ++k) {
+      const double mass = sum[centre(k)][0];
+      mass_[number(a, k)] += mass;
+      if (mass > 0.0) ++soils_[number(a, k)];
+    }
   }
 
   // How full the patches of active block a are, from their sums.
@@ -87,7 +99,9 @@ class PatchFilling {
     for (int k = 0; k < patches; ++k) {
       const std::size_t at = number(a, k);
       PatchFit& out = fit[first(k) + patch_offset<B>(1)];
-      if (filling_[at] > full)
+      if (soils_[at] > 1)
+        out[1] = std::max(0.0, filling_[at] - 1.0 - overlap);
+      else if (filling_[at] > full)
         out[1] = is_among_full(a, k) ? filling_[at] - 1.0 : std::max(0.0, filling_[at] - 1.0 - noise);
     }
   }
@@ -97,6 +111,7 @@ class PatchFilling {
   static constexpr int B = Block<Dim>::cells;
   static constexpr double full = 0.9;         // of a patch whose neighbour is not at a free surface
   static constexpr double noise = 0.02;       // of what a patch is filled
+  static constexpr double overlap = 0.1;      // of a patch in which soils meet
   static constexpr double least_room = 0.25;  // share of a shape function; under it the nodes' sums say little
   static constexpr double unknown = -1.0;
 
@@ -137,7 +152,8 @@ class PatchFilling {
   std::vector<std::array<int, Block<Dim>::neighbours>> beside_;  // active blocks around active blocks
   // Of each active block's patches: m3 (m2) of the shape function above the ground; kg at the centre; 1, of that room.
   std::vector<double> room_, mass_, filling_;
-  std::vector<Weighed> weighed_;  // by active block
+  std::vector<std::uint8_t> soils_;  // fields with mass at the centre
+  std::vector<Weighed> weighed_;     // by active block
 };
 
 }  // namespace tailrun::mpm

@@ -31,7 +31,8 @@ Particles<2> square(const std::function<Point(Point)>& moved) {
 
 // What is found in the patch around a point.
 struct Found {
-  explicit Found(Particles<2> particles) : P(std::move(particles)) {
+  // `soils` that share each node's mass equally.
+  explicit Found(Particles<2> particles, int soils = 1) : P(std::move(particles)) {
     grid.sort(P);
     filling.lay_out(grid, [](std::size_t, int) { return 1.0; });
     std::vector<PatchSum> sums(grid.active() * Block<2>::nodes, PatchSum{});
@@ -53,7 +54,7 @@ struct Found {
       }
       for (int n = 0; n < 9; ++n) {
         const auto node = place(first[0] + n % 3, first[1] + n / 3);
-        if (node >= 0) masses[static_cast<std::size_t>(node)][0] += w[0][n % 3] * w[1][n / 3] * P.mass[p];
+        if (node >= 0) masses[static_cast<std::size_t>(node)][0] += w[0][n % 3] * w[1][n / 3] * P.mass[p] / soils;
       }
       const auto sum = static_cast<std::size_t>(place(patch[0], patch[1]));
       sums[sum + 1][3] += P.volume[p];
@@ -62,7 +63,7 @@ struct Found {
     fits.assign(sums.size(), PatchFit{});
     for (std::size_t a = 0; a < grid.active(); ++a) {
       filling.begin(a, false);
-      filling.weigh(a, masses.data() + a * Block<2>::nodes);
+      for (int k = 0; k < soils; ++k) filling.weigh(a, masses.data() + a * Block<2>::nodes);
       filling.compare(a, sums.data() + a * Block<2>::nodes);
     }
     for (std::size_t a = 0; a < grid.active(); ++a) filling.judge(a, fits.data() + a * Block<2>::nodes);
@@ -96,6 +97,15 @@ TEST_CASE("particles that stand as close as their volumes are not crowded, at th
 TEST_CASE("particles closer than their volumes are crowded by as much") {
   Found found(square([](Point x) { return Point{x[0] / 1.1, x[1]}; }));
   CHECK(found.at(5.5, 6.5)[1] == doctest::Approx(0.1).epsilon(0.1));
+}
+
+TEST_CASE("where soils meet, what is crowded by less than a tenth is left alone") {
+  const auto crowded = [](double share) {
+    return square([share](Point x) { return Point{x[0] / (1.0 + share), x[1]}; });
+  };
+  CHECK(Found(crowded(0.08)).at(5.5, 6.5)[1] == doctest::Approx(0.08).epsilon(0.1));
+  CHECK(Found(crowded(0.08), 2).at(5.5, 6.5)[1] == 0.0);
+  CHECK(Found(crowded(0.25), 2).at(5.5, 6.5)[1] == doctest::Approx(0.15).epsilon(0.05));
 }
 
 TEST_CASE("particles farther apart than their volumes count where all around is full, and not at the surface") {

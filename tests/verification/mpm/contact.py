@@ -42,6 +42,53 @@ def contact_block(r):
     return rows
 
 
+def contact_slab(r):
+    """A slab that slides on firm soil comes as far as on rigid ground, whatever the bed's angle to the grid and however its
+    particles lie: in rows along it (boxes that are turned), or in stairs along the grid (polygons)."""
+    def moved(scene, label):
+        centre = middle_of(all_frames(r.run(scene, label)), 0, "x")
+        return np.linalg.norm(centre[-1] - centre[0])
+
+    rows, wanted = [], {}
+    for cell in (1, 0.5):
+        ground = r.scene()
+        ground["grid"]["cell_size"] = cell
+        ground["particles"].pop()
+        del ground["materials"]["firm"]
+        ground["terrain"] = [{"name": "plane", "points": [[-100, 0], [500, 0]], "friction": 10}]
+        wanted[cell] = moved(ground, f"ground_{cell}")
+    for cell, shape, angle in ((1, "box", 0), (1, "box", 3), (1, "box", 8), (1, "box", 20), (1, "box", 45),
+                               (1, "polygon", 8), (1, "polygon", 35), (0.5, "box", 8)):
+        found = moved(turned_slab(r.scene(), cell, shape, angle), f"{shape}_{angle}_{cell}")
+        rows.append((f"way of the slab's centre in 12 s against rigid ground, m, {shape} turned by {angle} deg, cells of {cell} m",
+                     found, wanted[cell], relative(found, wanted[cell]), 0.05))
+    return rows
+
+
+def turned_slab(scene, cell, shape, angle):
+    def turned(x, y):
+        c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+        return [x * c - y * s, x * s + y * c]
+
+    scene["grid"]["cell_size"] = cell
+    scene["gravity"] = turned(*scene["gravity"])
+    for line in scene["terrain"]:
+        line["points"] = [turned(*point) for point in line["points"]]
+    for body in scene["particles"]:
+        stress, low, high = body["stress"], body["low"], body["high"]
+        stress["surface_point"] = turned(*stress["surface_point"])
+        stress["angle"] = angle
+        if shape == "box":
+            body["low"] = turned(*low)
+            body["high"] = [body["low"][d] + high[d] - low[d] for d in range(2)]
+            body["rotation"] = angle
+        else:
+            corners = [low, [high[0], low[1]], high, [low[0], high[1]]]
+            body.update(shape="polygon", points=[turned(*corner) for corner in corners])
+            del body["low"], body["high"]
+    return scene
+
+
 def contact_stack(r):
     """Blocks that start in equilibrium stay: weak soil between strong blocks, and three elastic blocks with a field each.
     Nothing damps them. The speed is the one below which mpm_stage says that a scene rests."""
