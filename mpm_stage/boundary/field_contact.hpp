@@ -42,7 +42,7 @@ constexpr double open_gap = 0.15;
 // whose surface is 0.7 cells away lies there.
 constexpr double rim = 0.9;
 
-// plainness() of a surface that is none of a corner or a thin plate; stairs of particles have 0.98 and more.
+// Least plainness() of what is no corner and no thin plate; a surface that wobbles by up to 20 deg has 0.98.
 constexpr double plain = 0.9;
 
 // The surface of a field at a node and those around it: sums of G and of its size, nearer nodes counting more. A single

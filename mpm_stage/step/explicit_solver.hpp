@@ -378,7 +378,7 @@ class ExplicitSolver final : public Solver<Dim> {
   AlignedVector<Vec4> sums_, force_sums_;         // per active block, only with mirrors
   AlignedVector<InterfaceNode> interface_tiles_;  // per occupied block, only with several fields
   AlignedVector<InterfaceNode> interfaces_;       // per block that several fields reach
-  std::vector<SurfaceAround<Dim>> surfaces_;      // the same
+  AlignedVector<Vec4> surfaces_;                  // the same: size and directions, around the node
   std::vector<std::uint8_t> meeting_;  // per active block: nodes at which fields met in the last step; several fields
   HalfSpaces<Shape> half_spaces_;
   // Per pair of fields and per block that several fields reach.

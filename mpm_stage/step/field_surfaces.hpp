@@ -1,6 +1,7 @@
 // The surfaces of the materials in each velocity field, for contact between them; included by explicit_solver.hpp.
 #pragma once
 
+#include "mpm_stage/grid/binomial_sums.hpp"
 #include "mpm_stage/step/explicit_solver.hpp"
 
 namespace tailrun::mpm {
@@ -51,51 +52,38 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather_interfaces() {
   }
 }
 
-// What a node and those beside it have, by weights 2^Dim, half of it beside, a quarter across corners: `at` (in a row
-// of blocks) gives the outward surface and its size.
-template <int Dim, class At>
-SurfaceAround<Dim> sum_around(const std::array<int, Block<Dim>::neighbours>& around, int n, At at) {
-  SurfaceAround<Dim> sum;
-  for (int s = 0; s < Block<Dim>::neighbours; ++s) {
-    const auto step = neighbour_step<Dim>(s);
-    const auto k = node_beside<Dim>(around, n, step);
-    if (k < 0) continue;
-    double weight = 1.0;
-    for (int d = 0; d < Dim; ++d) weight *= step[d] == 0 ? 2.0 : 1.0;
-    const SurfaceAround<Dim> surface = at(static_cast<std::size_t>(k));
-    for (int d = 0; d < Dim; ++d) sum.outward[d] += weight * surface.outward[d];
-    sum.faces += weight * surface.faces;
-  }
-  return sum;
-}
-
-// The firm fields' surfaces, smoothed once. Twice, in surface_around(): particles that lie in rows along the grid make
-// stairs of a slanting bed, with steps several cells long.
+// The firm fields' surfaces around the nodes of blocks in which fields met. Over as many nodes as this: particles that
+// lie in rows along the grid make stairs of a slanting bed, with steps several cells long.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::smooth_surfaces() {
   const std::vector<std::size_t>& blocks = fields_.shared_blocks();
   surfaces_.resize(interfaces_.size());
 #pragma omp parallel for schedule(dynamic, 4)
-  for (std::size_t s = 0; s < blocks.size(); ++s)
+  for (std::size_t s = 0; s < blocks.size(); ++s) {
+    const std::uint8_t* met = meeting_.data() + blocks[s] * block_nodes;
+    if (std::none_of(met, met + block_nodes, [](std::uint8_t m) { return m != 0; })) continue;
     for (int f = 0; f < fields_.count(); ++f) {
-      if (!options_.fields.firm(f)) continue;
+      if (!options_.fields.firm(f) || !fields_.present(f, blocks[s])) continue;
       const InterfaceNode* nodes = interfaces_.data() + interface_of(f, blocks[0]);
-      for (int n = 0; n < block_nodes; ++n)
-        surfaces_[interface_of(f, blocks[s]) + static_cast<std::size_t>(n)] =
-            sum_around<Dim>(fields_.shared_around(s), n, [nodes](std::size_t k) {
-              SurfaceAround<Dim> surface;
-              for (int d = 0; d < Dim; ++d) surface.outward[d] = nodes[k].second[1 + d];
-              surface.faces = std::sqrt(square<Dim>(surface.outward));
-              return surface;
-            });
+      BinomialSums<Dim>().make(
+          fields_.shared_around(s),
+          [nodes](std::size_t k) {
+            Vec4 face = nodes[k].second;  // and its size in the place of the strength
+            face[0] = std::sqrt(face[1] * face[1] + face[2] * face[2] + face[3] * face[3]);
+            return face;
+          },
+          surfaces_.data() + interface_of(f, blocks[s]));
     }
+  }
 }
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 SurfaceAround<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::surface_around(int f, std::size_t a, int n) const {
-  const SurfaceAround<Dim>* nodes = surfaces_.data() + interface_of(f, fields_.shared_blocks()[0]);
-  return sum_around<Dim>(fields_.shared_around(static_cast<std::size_t>(fields_.shared_number(a))), n,
-                         [nodes](std::size_t k) { return nodes[k]; });
+  const Vec4& sum = surfaces_[interface_of(f, a) + static_cast<std::size_t>(n)];
+  SurfaceAround<Dim> surface;
+  surface.faces = sum[0];
+  for (int d = 0; d < Dim; ++d) surface.outward[d] = sum[1 + d];
+  return surface;
 }
 
 }  // namespace tailrun::mpm
