@@ -100,7 +100,8 @@ TEST_CASE("phi = 0 soil brakes by its strength times the surface, and not at all
   CHECK(apart.v[1] == 1.0);
 }
 
-TEST_CASE("bodies meet where the plainer one's surface faces, around the node; flowing soil at corners the node's own") {
+TEST_CASE(
+    "bodies meet where the plainer one's surface faces, around the node; flowing soil at corners the node's own") {
   for (const bool flows : {false, true})
     for (const double plainness : {1.0, 0.8}) {
       auto i = side(-1.0, 2.0, {1.0, 0.0}, no_soil_limit), j = side(1.0, 3.0, {0.0, 0.0}, no_soil_limit);
