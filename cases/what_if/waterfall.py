@@ -12,6 +12,7 @@ from steps import PARAMETER
 
 SHOWN = ("largest_displacement_fem_m", "largest_displacement_mpm_m", "runout_m", "released_volume_m3")
 MORE, LESS, ALL = "#c0392b", "#2b6ca3", "0.55"
+WITHOUT = {"missing": "not computed", "failed": "failed", "done": "none"}  # what stands in the place of a bar
 CERTAIN = 2.0  # standard errors that a change has to exceed
 
 
@@ -19,7 +20,8 @@ class Way:
     """Of one headline number: arrays with a value a step."""
 
     def __init__(self, table, headline):
-        self.failed = {name for name, state in zip(table.values[PARAMETER], table.state) if state == "failed"}
+        # Why there is no value of a step: "failed" only where no member is done.
+        self.state = {name: state for wanted in ("missing", "failed", "done") for name, state in zip(table.values[PARAMETER], table.state) if state == wanted}
         names = list(dict.fromkeys(table.values[PARAMETER]))
         own = np.array(table.values[PARAMETER])
         numbers = table.numbers[headline.name] * headline.factor
@@ -81,7 +83,7 @@ def panel(axis, way, reference):
     """A bar from the value before to that of the step; the first and the last are given whole. Pale where chance alone could do it."""
     for k in range(len(way.names)):
         if not way.count[k]:
-            axis.text(0.02, k, "none ended" if way.names[k] in way.failed else "not computed", transform=axis.get_yaxis_transform(), va="center", fontsize=8, color="0.4")
+            axis.text(0.02, k, WITHOUT[way.state[way.names[k]]], transform=axis.get_yaxis_transform(), va="center", fontsize=8, color="0.4")
             continue
         whole = np.isnan(way.before[k])
         low, high = (0.0, way.mean[k]) if whole else sorted((way.before[k], way.mean[k]))
