@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Checks finished results of the chain: each stage's files are there, complete, and hold physics and not noise.
 
-    check_chain.py out/smoke/template out/smoke/mochikoshi-coarse
+    check_chain.py out/smoke/template out/smoke/mochikoshi-coarse --family out/smoke/mochikoshi-coarse tests/data/mochikoshi_spread.json coarse
+
+--family: the results in that folder are one of the family whose spread the file has for that size (cases/what_if/family.py).
 """
 
 import argparse
@@ -10,8 +12,10 @@ import struct
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent / "plot"))
+sys.path[:0] = [str(Path(__file__).resolve().parent / folder) for folder in ("plot", "what_if")]
 import chain_files as chain  # noqa: E402
+import family  # noqa: E402
+import headline  # noqa: E402
 
 PICTURES = ["mesh", "velocity", "excess_pore_pressure_ratio", "displacement_fem", "fem_series", "handover"]
 PICTURES += ["displacement_mpm", "runout", "runout_front", "energy", "overview"]
@@ -59,9 +63,14 @@ def problems(folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folders", type=Path, nargs="+")
+    parser.add_argument("--family", nargs=3, metavar=("FOLDER", "FILE", "SIZE"))
+    arguments = parser.parse_args()
     wrong = 0
-    for folder in parser.parse_args().folders:
+    for folder in arguments.folders:
         found = problems(folder)
+        if arguments.family and folder == Path(arguments.family[0]):
+            spread = json.loads(Path(arguments.family[1]).read_text())[arguments.family[2]]["numbers"]
+            found += family.strangers(headline.of_run(folder)[0], spread)
         wrong += len(found)
         for text in found:
             print(f"{folder}: {text}", file=sys.stderr)

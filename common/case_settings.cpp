@@ -53,6 +53,17 @@ std::size_t index_of(const std::string& word, const Json& list, const std::strin
                                   : fmt::format("with elements 0 to {}, counted from 0", list.size() - 1)));
 }
 
+// Whether the words differ in two neighbouring letters at most: a slip, and not another word.
+bool nearly(const std::string& a, const std::string& b) {
+  const std::size_t most = std::max(a.size(), b.size()), least = std::min(a.size(), b.size());
+  std::size_t before = 0, behind = 0;
+  while (before < least && a[before] == b[before]) ++before;
+  while (behind < least - before && a[a.size() - 1 - behind] == b[b.size() - 1 - behind]) ++behind;
+  return most - before - behind <= 2;
+}
+
+// An object on the way that the file lacks is made, for the reader to judge. One that is spelt nearly like a key that
+// is there would be judged by what is missing in it, and is refused here.
 Json& member_of(Json& object, std::size_t depth, const std::string& place, const CaseSetting& setting,
                 const std::filesystem::path& path) {
   const std::string& key = setting.keys[depth];
@@ -60,12 +71,16 @@ Json& member_of(Json& object, std::size_t depth, const std::string& place, const
   if (depth + 1 == setting.keys.size()) return object[key];  // the reader says whether there is such a key
   std::vector<std::string> there;
   for (const auto& [name, unused] : object.items()) there.push_back(name);
-  Json whole = setting.value;
-  for (std::size_t k = setting.keys.size() - 1; k > depth; --k) whole = Json{{setting.keys[k], whole}};
-  refuse(setting, path,
-         fmt::format("there is no {}/{}.{} There is: {}. An object that is not there yet is given as a whole: "
-                     "--set '{}/{}={}'",
-                     place, key, did_you_mean(key, there), joined(there), place, key, whole.dump()));
+  const auto slip = std::find_if(there.begin(), there.end(), [&](const auto& name) { return nearly(key, name); });
+  if (slip != there.end()) {
+    Json whole = setting.value;
+    for (std::size_t k = setting.keys.size() - 1; k > depth; --k) whole = Json{{setting.keys[k], whole}};
+    refuse(setting, path,
+           fmt::format("there is no {}/{}. Did you mean '{}'? There is: {}. If it is meant, give it as a whole: "
+                       "--set '{}/{}={}'",
+                       place, key, *slip, joined(there), place, key, whole.dump()));
+  }
+  return object[key] = Json::object();
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // Values of the case file given on the command line, `--set /json/pointer=value`. They replace what the file says
 // before anything is read, so that they are checked as if they stood in it. What a setting can do: give a key of an
-// object that is there, or an element of a list that is there. A misspelt way to it is an InputError with the nearest
-// word.
+// object, which is made where the file lacks it, or an element of a list that is there. A misspelt way to it is an
+// InputError with the nearest word: here when the file has such a word, from the reader when only the reader knows it.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@ struct CaseSetting {
 // Throws InputError: no '=', no pointer, not UTF-8, or a value that begins as JSON and goes wrong.
 CaseSetting parse_setting(const std::string& text);
 
-// Throws InputError naming the setting and `path`: an object on the way is missing, an index is beyond its list.
+// Throws InputError naming the setting and `path`: an object on the way is misspelt, an index is beyond its list.
 void apply_settings(nlohmann::ordered_json& json, const std::vector<CaseSetting>& settings,
                     const std::filesystem::path& path);
 

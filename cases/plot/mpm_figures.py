@@ -65,9 +65,9 @@ def plot_front(plt, front, summary, marks, output):
     figure, axes = plt.subplots(3, 1, figsize=(9, 8.6), sharex=True)
     t = marks.start + front["time_s"]
     foremost, body = (f"{100.0 * share:g} %" for share in summary["runout_quantiles"])
-    axes[0].plot(t, marks.runout("front_m"), color="0.6", lw=0.8, label="outermost particle, flowed or not")
-    axes[0].plot(t, marks.runout("flow_front_m"), "C3", label=f"runout: {foremost} of what flowed")
-    axes[0].plot(t, marks.runout("coherent_front_m"), "C0", ls="--", label="of what flowed, without gaps")
+    axes[0].plot(t, front["runout_m"], "C3", lw=2.0, label="runout")
+    axes[0].plot(t, marks.runout("flow_front_m"), color="0.6", lw=0.8, label=f"{foremost} of what flowed")
+    axes[0].plot(t, marks.runout("coherent_front_m"), "C0", lw=1.0, ls="--", label="of what flowed, without gaps")
     axes[0].plot(t, marks.runout("flow_body_m"), "C3", lw=1.0, ls=":", label=f"{body} of what flowed")
     axes[0].axhline(0.0, color="0.3", lw=0.8)
     axes[0].set(ylabel="from the toe (m)", title=f"runout from the toe before the motion, x = {marks.toe:.1f} m; "

@@ -43,11 +43,11 @@ class Marks:
         return self.sign * (self.series[column] - self.toe)
 
     def front_at(self, time):
-        """m, position of the front of what has flowed at a frame's time; None when nothing has."""
-        if self.series is None or "flow_front_m" not in self.series:
+        """m, position that the runout reaches at a frame's time; None when nothing has flowed."""
+        if self.series is None or self.toe is None or "runout_m" not in self.series:
             return None
-        front = self.series["flow_front_m"][np.abs(self.start + self.series["time_s"] - time).argmin()]
-        return float(front) if np.isfinite(front) else None
+        runout = self.series["runout_m"][np.abs(self.start + self.series["time_s"] - time).argmin()]
+        return float(self.toe + self.sign * runout) if np.isfinite(runout) else None
 
     def draw_ground(self, axis, **options):
         axis.plot(self.x, self.y, **{"color": TOE, "lw": 0.9, "ls": (0, (4, 3)), **options})

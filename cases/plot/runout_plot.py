@@ -7,6 +7,13 @@ import field_plot as fields
 import style
 
 
+def extent(x):
+    """Least and largest of x, but for drops that are far ahead of the rest: they would make all else too small to see."""
+    near, far = np.quantile(x, [0.01, 0.99])
+    margin = 0.5 * (far - near)
+    return max(x.min(), near - margin), min(x.max(), far + margin)
+
+
 def runout_view(first, last, options):
     """plot.json's runout_view, grown to hold the last frame's front; or what moved, with some ground before it."""
     moved = np.hypot(*(last.data["displacement"] - displacement_at_transfer(first, last))[:, :2].T)
@@ -14,16 +21,17 @@ def runout_view(first, last, options):
     reach = last.position[shown] if shown.any() else last.position
     if shown.any() and len(first.position) == len(shown):
         reach = np.concatenate([reach, first.position[shown]])
+    left, right = extent(reach[:, 0])
     low, high = last.position.min(axis=0), last.position.max(axis=0)
     high = np.maximum(high, first.position.max(axis=0))
     if "runout_view" in options:
         view = list(options["runout_view"])
-        view[1] = max(view[1], reach[:, 0].max() + 20.0)
+        view[1] = max(view[1], right + 20.0)
         return view
     height = high[1] - low[1]
     return [
-        max(low[0], reach[:, 0].min() - 2.0 * height),
-        reach[:, 0].max() + 2.0 * height,
+        max(low[0], left - 2.0 * height),
+        right + 2.0 * height,
         low[1] - 0.15 * height,
         high[1] + 0.2 * height,
     ]

@@ -53,12 +53,12 @@ def value_of(text):
 
 
 def place(content, keys, value):
-    """Puts `value` at the end of the way `keys`; False where the way does not exist."""
+    """Puts `value` at the end of the way `keys`, making objects that are not there as the programs do; False where there is no way."""
     for key in keys[:-1]:
         if isinstance(content, list) and key.isdigit() and int(key) < len(content):
             content = content[int(key)]
-        elif isinstance(content, dict) and key in content:
-            content = content[key]
+        elif isinstance(content, dict):
+            content = content.setdefault(key, {})
         else:
             return False
     if isinstance(content, dict):

@@ -89,7 +89,7 @@ def write_profiles(path, runs):
 
 
 def write_fronts(path, runs):
-    names = ["robust_front_m", "flow_front_m", "flowed_mass_kg", "rms_speed_m_s"]
+    names = ["robust_front_m", "flow_front_m", "runout_m", "flowed_mass_kg", "rms_speed_m_s"]
     rows = []
     for run in runs:
         if run.front is not None:

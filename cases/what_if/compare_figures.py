@@ -53,11 +53,11 @@ def draw_fronts(axes, runs, shades):
         if run.front is None:
             continue
         time = hand_over_time(run) + run.front["time_s"]
-        column = "flow_front_m" if "flow_front_m" in run.front else "robust_front_m"
-        axes[0].plot(time, run.front[column], color=shade, lw=1.4, label=run.name)
+        if "runout_m" in run.front:
+            axes[0].plot(time, run.front["runout_m"], color=shade, lw=1.4, label=run.name)
         if "flowed_mass_kg" in run.front:
             axes[1].plot(time, run.front["flowed_mass_kg"] / 1e3, color=shade, lw=1.4, label=run.name)
-    axes[0].set(xlabel="time since the start of shaking (s)", ylabel="x (m)", title="front of what flowed")
+    axes[0].set(xlabel="time since the start of shaking (s)", ylabel="from the toe (m)", title="runout")
     axes[1].set(xlabel="time since the start of shaking (s)", ylabel="mass per metre of dam (t)", title="mass that flowed")
 
 
@@ -73,5 +73,6 @@ def draw(runs, output):
     for axis in axes.values():
         axis.grid(alpha=0.3)
     handles, labels = axes["surface" if with_flow else "front"].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=min(len(labels), 6))
+    if labels:
+        figure.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=min(len(labels), 6))
     style.save(figure, output)

@@ -1,7 +1,7 @@
 """What a sweep varies: cases/<case>/sweep.json, read and checked, and the members that come of it.
 
 {
-  "design": "latin_hypercube",     or "sobol", "saltelli" (for Sobol' indices), "grid" (every combination of lists)
+  "design": "latin_hypercube",     or "sobol", "saltelli" (for Sobol' indices), "grid" (every combination of lists), "steps" (steps.py)
   "members": 24,                   a list [24, 24]: batches, so that a Latin hypercube can grow; "saltelli": size of its two base samples
   "seed": 1,
   "parameters": {
@@ -17,7 +17,7 @@ docs/what_if.md says more.
 
 import itertools
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -28,8 +28,9 @@ from case_part import read_case
 from distributions import Distribution, rounded
 from json_keys import DesignError, Keys, near
 from sample import copula, sample
+from steps import PARAMETER, read_reference, read_steps
 
-DESIGNS = ("latin_hypercube", "sobol", "saltelli", "grid")
+DESIGNS = ("latin_hypercube", "sobol", "saltelli", "grid", "steps")
 MOST_MEMBERS = 1000000
 
 
@@ -64,14 +65,21 @@ class Design:
     seed: int
     parameters: list
     members: list  # {parameter: value}, in order
+    steps: list = field(default_factory=list)  # steps.Step; the parameter "step" is the name of one
+    reference: dict = None  # what the steps lead to
+
+
+MISSPELT = 0.7  # of difflib: a key so much like one that is there is not a key of its own
 
 
 def at_pointer(content, pointer):
-    """The value there; KeyError(nearest words) with the part that is missing."""
+    """The value there, None where an object lacks it; KeyError(nearest words) where it cannot be, or looks like another key that is there."""
     way = ""
     for key in (part.replace("~1", "/").replace("~0", "~") for part in pointer.split("/")[1:]):
         known = content.keys() if isinstance(content, dict) else [str(k) for k in range(len(content))] if isinstance(content, list) else []
         if key not in known:
+            if isinstance(content, dict) and not near(key, known, MISSPELT):
+                return None
             raise KeyError(f"there is no '{key}' at '{way or '/'}'.{near(key, known)} There are: {', '.join(known) or 'none'}")
         content = content[key] if isinstance(content, dict) else content[int(key)]
         way += f"/{key}"
@@ -79,8 +87,8 @@ def at_pointer(content, pointer):
 
 
 def file_value(keys, name, word, contents):
-    """What the case file says under `fem:/...`. A sweep varies what is written there, so that the base value is known and a misspelt key
-    is found before anything is computed."""
+    """What the case file says under `fem:/...`, None where it says nothing. A key that is spelt nearly like one that is there is refused; one that
+    no program knows is refused by the program, with the nearest that it does know."""
     try:
         parsed = what_if.parse(f"{word}=0")
     except what_if.SettingError as error:
@@ -93,8 +101,7 @@ def file_value(keys, name, word, contents):
     try:
         return at_pointer(contents[stage], word.partition(":")[2])
     except KeyError as error:
-        raise DesignError(f"{keys.at(name)}: {word}: in {stage}.json {error.args[0]}. A key to be varied has to be in the case file, "
-                          "with the value that the base run has") from None
+        raise DesignError(f"{keys.at(name)}: {word}: in {stage}.json {error.args[0]}") from None
 
 
 def files_of(keys, case_dir):
@@ -143,8 +150,8 @@ def read_parameter(keys, name, case_dir, contents):
         keys.refuse("scales", parameter.scales, "true or false")
     for word in words:
         if parameter.scales and not (scalable(file_value(keys, where, word, contents)) and parameter.numeric):
-            raise DesignError(f"{keys.at('scales')}: {word} is {keys.word(file_value(keys, where, word, contents))} in the case file: "
-                              "only a number or a list of numbers can be scaled, by numbers")
+            raise DesignError(f"{keys.at('scales')}: {word} is {keys.word(file_value(keys, where, word, contents) or 'nothing')} in the case file: "
+                              "only a number or a list of numbers that the file has can be scaled, by numbers")
     keys.finish()
     return parameter
 
@@ -176,9 +183,9 @@ def rank_correlations(keys, parameters):
 
 
 def batches_of(keys, kind):
-    if kind == "grid":
+    if kind in ("grid", "steps"):
         if keys.has("members"):
-            raise DesignError(f"{keys.at('members')}: a grid has as many members as its lists have combinations; take the key out")
+            raise DesignError(f"{keys.at('members')}: a design of lists has as many members as its lists have combinations; take the key out")
         return []
     given = keys.value("members", required=True)
     batches = given if isinstance(given, list) else [given]
@@ -192,10 +199,10 @@ def batches_of(keys, kind):
 
 
 def members_of(kind, batches, seed, parameters, correlations, keys):
-    if kind == "grid":
+    if kind in ("grid", "steps"):
         for parameter in parameters:
             if parameter.choices is None:
-                raise DesignError(f"{keys.file}: /parameters/{parameter.name}: a grid is made of lists ('values' or 'folder'), not of distributions")
+                raise DesignError(f"{keys.file}: /parameters/{parameter.name}: the design '{kind}' is made of lists ('values' or 'folder'), not of distributions")
         combinations = itertools.product(*(parameter.choices for parameter in parameters))
         return [{parameter.name: value for parameter, value in zip(parameters, values)} for values in combinations]
     if kind == "saltelli" and not np.array_equal(correlations, np.eye(len(parameters))):
@@ -228,11 +235,14 @@ def design_of(content, path, case_dir, contents):
     keys = Keys(path, "", content)
     kind = keys.choice("design", DESIGNS, "latin_hypercube")
     title, seed = keys.text("title", ""), keys.count("seed", 1, 0)
-    given = keys.value("parameters", required=True)
-    if not isinstance(given, dict) or not given:
+    steps, reference = (read_steps(keys, contents), read_reference(keys)) if kind == "steps" else ([], None)
+    given = keys.value("parameters", {} if steps else None, required=not steps)
+    if not isinstance(given, dict) or not (given or steps):
         keys.refuse("parameters", given, "an object with a parameter at least")
-    parameters = []
+    parameters = [Parameter(PARAMETER, [], steps[0].name, choices=[step.name for step in steps])] if steps else []
     for name, entry in given.items():
+        if steps and name == PARAMETER:
+            raise DesignError(f"{path}: /parameters: '{name}' is the name of the steps themselves; choose another")
         if not name.replace("_", "").isalnum() or not name.isascii():
             raise DesignError(f"{path}: /parameters: '{name}' cannot be a parameter's name: letters, digits and _ are allowed")
         parameters.append(read_parameter(Keys(path, f"/parameters/{name}", entry), name, case_dir, contents))
@@ -240,11 +250,14 @@ def design_of(content, path, case_dir, contents):
     for word in words:
         if words.count(word) > 1:
             raise DesignError(f"{path}: /parameters: {word} is varied twice")
+        for step in steps:
+            if word in step.keys:
+                raise DesignError(f"{path}: /parameters: {word} is varied, and set by the step '{step.name}'")
     batches = batches_of(keys, kind)
     correlations = rank_correlations(keys, parameters)
     keys.finish()
     members = members_of(kind, batches, seed, parameters, correlations, keys)
-    return Design(title, kind, batches, seed, parameters, members)
+    return Design(title, kind, batches, seed, parameters, members, steps, reference)
 
 
 def scaled(value, factor):
@@ -253,7 +266,8 @@ def scaled(value, factor):
 
 def settings_of(design, member, contents):
     """Settings (settings.parse) of a member: {"mpm": ["/residual_strength/factor=0.5"], ...}."""
-    found = {}
+    own = next((step.settings for step in design.steps if step.name == member[PARAMETER]), {})
+    found = {stage: list(texts) for stage, texts in own.items()}
     for parameter in design.parameters:
         for word in parameter.keys:
             stage, _, pointer = word.partition(":")

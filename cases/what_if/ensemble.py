@@ -31,11 +31,9 @@ def design_for(case_dir):
         raise DesignError(f"{case_dir}: the case has no mpm.json, so that nothing runs out")
     word = SCALED[0] if "fem" in contents else SCALED[1]
     stage, _, pointer = word.partition(":")
-    try:
-        at_pointer(contents[stage], pointer)
-    except KeyError:
+    if at_pointer(contents[stage], pointer) is None:
         raise DesignError(f"{files[stage]}: an ensemble scales {pointer}, which is not there: write it into the file with the value that the run has, "
-                          f"or say in {Path(case_dir) / 'ensemble.json'} (as sweep.json) what is to be varied") from None
+                          f"or say in {Path(case_dir) / 'ensemble.json'} (as sweep.json) what is to be varied")
     name = "motion_scale" if stage == "fem" else "courant_scale"
     content = {"title": f"{Path(case_dir).name}: runs that differ in nothing physical", "design": "grid",
                "parameters": {name: {"key": word, "values": FACTORS, "scales": True}}}

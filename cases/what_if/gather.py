@@ -9,6 +9,7 @@ import paths  # noqa: F401
 import html_page as page
 import members_table as members
 import sweep_figures
+import waterfall
 
 QUANTILES = (("P10", 10), ("P50", 50), ("P90", 90))
 
@@ -43,8 +44,11 @@ def gather(folder):
     members.write_failures(folder / "failed.csv", table)
     for old in folder.glob("*.png"):
         old.unlink()
-    made = sweep_figures.draw(table, folder) if done else []
-    header, rows = statistics(table)
+    by_steps = table.plan["design"] == "steps"
+    made = (waterfall if by_steps else sweep_figures).draw(table, folder) if done else []
+    if by_steps:
+        waterfall.write_csv(folder / "steps.csv", table)
+    header, rows = (waterfall.statistics if by_steps else statistics)(table)
     told = [f"member {', '.join(map(str, numbers))}: {stage}: {reason} (all that it said: {log})" for numbers, stage, reason, log in failures(table)]
     count = f"{done} of {len(table.state)} members done" + (f", {failed} failed" if failed else "") + (f", {missing} missing" if missing else "")
     moving = sum(content.get("stop_reason") == "end time" for content in table.content)
@@ -58,13 +62,15 @@ def gather(folder):
     widths = [max(len(row[k]) for row in [header, *rows]) for k in range(len(header))]
     for row in [header, *rows]:
         print("  " + "  ".join(f"{cell:{'<' if k < 1 else '>'}{widths[k]}}" for k, cell in enumerate(row)).rstrip())
-    for name in ("sweep.html", *(name for name, _ in made), "members.csv", "members.h5"):
+    for name in ("sweep.html", *(name for name, _ in made), *(["steps.csv"] if by_steps else []), "members.csv", "members.h5"):
         print(f"  {folder / name}")
     for text in end:
         print(f"  {text}")
     print(f"{folder}: {count}", flush=True)
     for text in told:
         print(f"  {text}", file=sys.stderr)
-    if failed or missing:
+    if missing:
         print("  The same command computes what is not there, and nothing else.", file=sys.stderr)
+    if failed:
+        print("  RETRY=1 with the same command tries again what failed.", file=sys.stderr)
     return 0 if done == len(table.state) else 2

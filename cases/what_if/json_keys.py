@@ -10,8 +10,8 @@ class DesignError(Exception):
     """A sweep file that cannot be meant."""
 
 
-def near(word, known):
-    found = difflib.get_close_matches(str(word), [str(k) for k in known], 1, 0.5)
+def near(word, known, alike=0.5):
+    found = difflib.get_close_matches(str(word), [str(k) for k in known], 1, alike)
     return f" Did you mean '{found[0]}'?" if found else ""
 
 

@@ -92,6 +92,8 @@ def load(folder):
 
 
 def text_of(value):
+    if value is None:
+        return "-"
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return f"{value:.12g}"
     return value if isinstance(value, str) else json.dumps(value)

@@ -90,10 +90,15 @@ def there_already(stage, key, store, donors):
     return any(results_of(folder, stage, key) is not None for folder in folders)
 
 
+def has_failed(member, store):
+    """Whether it, or a stage that it needs, has failed; nothing is known of it without."""
+    return not is_done(store, member.key) and any((folder_of(store, *name) / "failed.json").exists() for name in member.keys.items())
+
+
 def units_of(members, store, fem, phase):
-    """Units that are missing, in the order of the stages; the last ones are the members'."""
+    """Units that are missing, in the order of the stages; the last ones are the members'. What has failed is not missing (forget_failures)."""
     donors = [(words, folder) for words, folder in named.donors(fem, phase) if Path(store) not in folder.parents]
-    missing = {member.key: member for member in members if not is_done(store, member.key)}
+    missing = {member.key: member for member in members if not is_done(store, member.key) and not has_failed(member, store)}
     users = {}
     for member in members:
         for stage, key in member.keys.items():
@@ -127,7 +132,7 @@ def write_table(path, units):
 
 
 def forget_failures(members, store):
-    """What failed is tried again: of members that are missing nothing is known any more."""
+    """What failed is tried again: nothing is known of it any more."""
     for name in {name for member in members if not is_done(store, member.key) for name in member.keys.items()}:
         (folder_of(store, *name) / "failed.json").unlink(missing_ok=True)
 

@@ -6,7 +6,7 @@
     sweep.py gather ...                      table and pictures of what is there
 
 make's own -j says how many members are computed at a time (-j alone: as the cores and the scene's size allow); SBATCH_OPTIONS of the
-environment goes to sbatch.
+environment goes to sbatch, RETRY=1 tries members again that have failed.
 """
 
 import argparse
@@ -66,6 +66,10 @@ def free_memory():
         return float("inf")
 
 
+def retry_asked():
+    return os.environ.get("RETRY", "") not in ("", "0", "no", "off")
+
+
 def unit_command(arguments, store, folder, threads):
     """The words that compute a line of the table; '--line N' is to be added."""
     words = [arguments.python, Path(__file__).resolve().parent / "unit.py", "--folder", folder, "--store", store, "--fem", arguments.fem,
@@ -89,7 +93,7 @@ def write_rules(path, units, lines, command):
 def write_plan(folder, design, members, arguments):
     write_json(folder / "plan.json", {
         "title": design.title, "case": str(arguments.case), "size": arguments.size, "time": arguments.time, "design": design.kind,
-        "batches": design.batches, "seed": design.seed, "store": str(arguments.fem / "store"),
+        "batches": design.batches, "seed": design.seed, "store": str(arguments.fem / "store"), "reference": design.reference,
         "parameters": [{"name": p.name, "keys": p.keys, "base": p.base_value(), "scales": p.scales, "numeric": p.numeric} for p in design.parameters],
         "members": [{"number": m.number, "values": m.values, "settings": m.settings, "keys": m.keys} for m in members]})
 
@@ -105,14 +109,17 @@ def run(arguments, design, folder):
     for member in members:
         if plan.is_done(store, member.key):
             plan.tidy(store, member.key)
+    if retry_asked():
+        plan.forget_failures(members, store)
     units = plan.units_of(members, store, arguments.fem, arguments.phase)
     folder.mkdir(parents=True, exist_ok=True)
     write_plan(folder, design, members, arguments)
     missing = sum(1 for unit in units if unit.stage == "mpm")
     stages = {stage: sum(1 for unit in units if unit.stage == stage) for stage in dict.fromkeys(unit.stage for unit in units)}
-    print(f"{folder}: {len(members)} members, {len({m.key for m in members}) - missing} there already"
+    failed = len({member.key for member in members if plan.has_failed(member, store)})
+    print(f"{folder}: {len(members)} members, {len({m.key for m in members}) - missing - failed} there already"
+          + (f", {failed} failed before (RETRY=1 tries them again)" if failed else "")
           + (f"; to compute: {', '.join(f'{count} x {stage}' for stage, count in stages.items())}" if units else ""), flush=True)
-    plan.forget_failures(members, store)
     lines = plan.write_table(folder / "units.jsonl", units)
     cores = len(os.sched_getaffinity(0))
     particles, memory = scene_of(arguments, members, store)

@@ -106,6 +106,11 @@ const FrontRow& FrontSeries<Dim>::sample(double time, const Particles<Dim>& P) {
 }
 
 template <int Dim>
+double FrontSeries<Dim>::runout(const FrontRow& row) const {
+  return std::min(runout(row.flow_front), std::max(runout(row.coherent_front), runout(row.flow_body)));
+}
+
+template <int Dim>
 bool FrontSeries<Dim>::at_rest(const RestCriterion& rest) const {
   if (!rest.active || rows_.empty()) return false;
   const FrontRow& last = rows_.back();
@@ -139,7 +144,7 @@ void FrontSeries<Dim>::write(const std::filesystem::path& path) const {
   for (const auto& r : rows_) {
     text += fmt::format("{:.9g}", r.time);
     for (const double x : {r.front, r.robust_front, r.top, r.centre_x, r.centre_y, r.rms_speed, r.maximum_speed,
-                           r.flow_front, r.flowed_mass, r.flow_body, r.coherent_front, runout(r.flow_front), r.ground})
+                           r.flow_front, r.flowed_mass, r.flow_body, r.coherent_front, runout(r), r.ground})
       text += csv_cell(x, 9);
     for (const double x : r.points) text += csv_cell(x, 9);
     text += "\n";

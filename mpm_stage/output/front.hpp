@@ -44,6 +44,9 @@ class FrontSeries {
   double ground_before() const { return ground_before_; }                // m, over it, before the motion
   // m, from the toe to `front` of a row (a position), along the flow.
   double runout(double front) const { return output_.front_sign * (front - toe_); }
+  // m, the one number: to the flow's front, but never beyond both the soil that hangs together and the flow's body,
+  // so that a few drops which a slope carries off do not make it.
+  double runout(const FrontRow& row) const;
   void restore(std::vector<FrontRow> rows) { rows_ = std::move(rows); }
   void write(const std::filesystem::path& path) const;
 

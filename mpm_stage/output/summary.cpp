@@ -129,12 +129,11 @@ void tell_runout(const Scene& scene, const FrontSeries<Dim>& front, Json& j) {
   const FrontRow& last = front.rows().back();
   double largest = std::nan("");
   for (const auto& row : front.rows())
-    if (!(front.runout(row.flow_front) <= largest) && std::isfinite(row.flow_front))
-      largest = front.runout(row.flow_front);
+    if (!(front.runout(row) <= largest) && std::isfinite(row.flow_front)) largest = front.runout(row);
   j["front_direction"] = fmt::format("{}{}", scene.output.front_sign > 0.0 ? '+' : '-', "xyz"[scene.output.front_axis]);
   j["initial_toe_m"] = front.toe();
   j["flow_front_position_m"] = number(last.flow_front);
-  j["runout_m"] = number(front.runout(last.flow_front));
+  j["runout_m"] = number(front.runout(last));
   j["runout_of_body_m"] = number(front.runout(last.flow_body));
   j["coherent_runout_m"] = number(front.runout(last.coherent_front));
   j["largest_runout_m"] = number(largest);

@@ -62,18 +62,45 @@ TEST_CASE("what is no setting is refused") {
   CHECK(settings_in_use().empty());
 }
 
-TEST_CASE("settings change keys and elements, and add keys to objects that are there") {
+TEST_CASE("settings change keys and elements, and make the objects that the file lacks") {
   CHECK(with({"/newmark/gamma=0.6"})["newmark"]["gamma"] == 0.6);
   CHECK(with({"/newmark/beta=0.3"})["newmark"].dump() == R"({"gamma":0.7,"beta":0.3})");
   CHECK(with({"/rules/1/factor=5", "/rules/0={\"x\": 1}"})["rules"].dump() == R"([{"x":1},{"factor":5}])");
   CHECK(with({"/fluid={\"density\": 1}", "/fluid/density=2"})["fluid"]["density"] == 2);
   CHECK(with({"/a~1b~0=1"})["a/b~"] == 1);
+  CHECK(with({"/fluid/density=1", "/fluid/deep/er=2"})["fluid"].dump() == R"({"density":1,"deep":{"er":2}})");
+  CHECK(with({"/rules/1/when/region=a"})["rules"][1].dump() == R"({"factor":2,"when":{"region":"a"}})");
+}
+
+TEST_CASE(
+    "an object that a setting made is checked like the file's: what no reader asks for is unknown, with the nearest "
+    "word") {
+  const auto read_rest = [](const CaseFile& file) {
+    file.root().object("newmark").number("gamma", "1", Range::positive());
+    file.root().text("title");
+    for (const CaseNode& rule : file.root().list("rules")) rule.number("factor", "1", Range::positive());
+  };
+  const CaseFile file = opened({"/fluid/densty=1"});
+  const CaseNode fluid = file.root().object("fluid");
+  CHECK(fluid.number_or("density", "kg/m3", Range::positive(), 1000.0) == 1000.0);
+  read_rest(file);
+  CHECK_THROWS_WITH_AS(
+      file.finish(), Contains("/fluid/densty (from --set): unknown key 'densty'. Did you mean 'density'?"), InputError);
+  const CaseFile other = opened({"/fluidd/density=1"});
+  CHECK_FALSE(other.root().object_if("fluid"));
+  read_rest(other);
+  CHECK_THROWS_WITH_AS(other.finish(), Contains("/fluidd (from --set): unknown key 'fluidd'. Did you mean 'fluid'?"),
+                       InputError);
 }
 
 TEST_CASE("a way that leads nowhere names the nearest word there is") {
   CHECK_THROWS_WITH_AS(with({"/newmrk/gamma=1"}), Contains("there is no /newmrk. Did you mean 'newmark'?"), InputError);
   CHECK_THROWS_WITH_AS(with({"/newmrk/gamma=1"}), Contains("--set /newmrk/gamma=1: fem.json"), InputError);
-  CHECK_THROWS_WITH_AS(with({"/fluid/density=1"}), Contains("--set '/fluid={\"density\":1}'"), InputError);
+  CHECK_THROWS_WITH_AS(with({"/newmrk/gamma=1"}), Contains("--set '/newmrk={\"gamma\":1}'"), InputError);
+  for (const char* slip : {"/nwemark/gamma=1", "/newmarkk/gamma=1", "/ewmark/gamma=1", "/newmakr/gamma=1"})
+    CHECK_THROWS_WITH_AS(with({slip}), Contains("Did you mean 'newmark'?"), InputError);
+  CHECK(with({"/tailings/x=1"})["tailings"]["x"] == 1);
+  CHECK(with({"/tides/x=1"})["tides"]["x"] == 1);  // three letters from title, and so a word of its own
   for (const char* text : {"/rules/2/factor=1", "/rules/-=1", "/rules/2=1", "/rules/01=1", "/rules/=1"})
     CHECK_THROWS_WITH_AS(with({text}), Contains("/rules is a list with elements 0 to 1"), InputError);
   CHECK_THROWS_WITH_AS(with({"/title/x=1"}), Contains("/title is a string"), InputError);

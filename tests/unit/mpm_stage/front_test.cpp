@@ -74,9 +74,33 @@ TEST_CASE("runout is measured from the toe before the motion to what has flowed;
   Particles<2> P = solver_row();
   CHECK(std::isnan(front.sample(0.0, P).flow_front));
   P.position[0][3] += 2.0;  // flows, and stays on the dam
-  CHECK(front.runout(front.sample(1.0, P).flow_front) == doctest::Approx(5.0 - 9.5));
+  CHECK(front.runout(front.sample(1.0, P)) == doctest::Approx(5.0 - 9.5));
   P.position[0][3] += 20.0;
-  CHECK(front.runout(front.sample(2.0, P).flow_front) == doctest::Approx(25.0 - 9.5));
+  CHECK(front.runout(front.sample(2.0, P)) == doctest::Approx(25.0 - 9.5));
+}
+
+TEST_CASE("a drop far ahead makes the flow's front and not the runout; soil that hangs together does, or the body") {
+  Scene scene = row_of_particles();
+  scene.output.body_quantile = 0.7;
+  FrontSeries<2> front(scene);
+  Particles<2> P = solver_row();
+  for (std::size_t p = 3; p <= 10; ++p) P.position[0][p] += 7.0;  // 10 .. 17, without gaps
+  CHECK(front.runout(front.sample(1.0, P)) == doctest::Approx(17.0 - 10.0));
+  P.position[0][10] = 5000.0;
+  const FrontRow& drop = front.sample(2.0, P);
+  CHECK(front.runout(drop.flow_front) == doctest::Approx(5000.0 - 10.0));
+  CHECK(front.runout(drop) == doctest::Approx(16.0 - 10.0));
+  // A third of the flow far off: the body goes with it.
+  P.position[0][8] = 550.0;
+  P.position[0][9] = 600.0;
+  const FrontRow& torn = front.sample(3.0, P);
+  CHECK(front.runout(torn) == doctest::Approx(front.runout(torn.flow_body)));
+  CHECK(front.runout(torn.flow_body) > front.runout(torn.coherent_front));
+}
+
+TEST_CASE("nothing that flowed has no runout") {
+  FrontSeries<2> front(row_of_particles());
+  CHECK(std::isnan(front.runout(front.sample(0.0, solver_row()))));
 }
 
 TEST_CASE("a flow towards smaller coordinates has its toe there, and the case may say where the toe is") {
@@ -86,7 +110,7 @@ TEST_CASE("a flow towards smaller coordinates has its toe there, and the case ma
   CHECK(front.toe() == doctest::Approx(0.0));
   Particles<2> P = solver_row();
   P.position[0][2] -= 7.0;
-  CHECK(front.runout(front.sample(1.0, P).flow_front) == doctest::Approx(5.0));
+  CHECK(front.runout(front.sample(1.0, P)) == doctest::Approx(5.0));
   scene.output.toe = 4.0;
   CHECK(FrontSeries<2>(scene).toe() == 4.0);
 }

@@ -26,7 +26,7 @@ with tempfile.TemporaryDirectory() as name:
     assert "+10.0" in said and "-5.0" in said and "peak_acceleration" in said, said
     assert (folder / "compare.png").stat().st_size > 10000 and "data:image/png" in (folder / "compare.html").read_text()
     fronts = list(csv.reader((folder / "fronts.csv").open()))
-    assert ["weak", "9", "", "20", "1000", ""] in fronts, fronts  # 1 s after the hand-over at 8 s
+    assert ["weak", "9", "", "20", "20", "1000", ""] in fronts, fronts  # 1 s after the hand-over at 8 s
     result, _ = clone.make("compare", "RUNS=base waek", status=2)
     assert "'waek' is not there" in result.stderr and "Did you mean weak" in result.stderr and "base, loud, weak" in result.stderr, result.stderr
     (clone.out / "runs" / "weak" / "mpm" / ".run").unlink()

@@ -17,6 +17,7 @@ import case_part  # noqa: E402
 import chain_files  # noqa: E402
 import results  # noqa: E402
 import runout_marks  # noqa: E402
+import runout_plot  # noqa: E402
 import style  # noqa: E402
 from palette import Palette  # noqa: E402
 
@@ -68,6 +69,16 @@ many.position = np.array([[0.25 + 2.0, 0.25], [0.25 + 2.0, 0.75], [0.75 + 2.0, 1
 many.size, many.data = 0.5, {"displacement": np.array([[2.0, 0.0, 0.0]] * 5)}
 x, y = runout_marks.ground_line(many)
 assert x.tolist() == [0.5, 1.5] and y.tolist() == [1.5, 0.5], (x, y)
+
+# A drop kilometres ahead does not shrink the picture; a front without one is shown to its end.
+row = np.linspace(0.0, 100.0, 201)
+assert runout_plot.extent(row) == (0.0, 100.0) and runout_plot.extent(np.append(row, 5000.0))[1] < 160.0
+
+# The front's mark stands where the runout ends, not where the foremost soil does.
+mark = runout_marks.Marks.__new__(runout_marks.Marks)
+mark.toe, mark.start, mark.sign = 88.0, 16.0, 1.0
+mark.series = {"time_s": np.array([0.0, 1.0, 2.0]), "flow_front_m": np.array([np.nan, 90.0, 3000.0]), "runout_m": np.array([np.nan, 2.0, 12.0])}
+assert mark.front_at(16.0) is None and mark.front_at(18.1) == 100.0
 
 case = case_part.without_comments('{"a": "http://b", /* c */ "d": 1 // "e"\n, "f\\"//": [2]}')
 assert case_part.json.loads(case) == {"a": "http://b", "d": 1, 'f"//': [2]}, case

@@ -48,7 +48,7 @@ else:
         print("[error] mpm_stage: the computation failed: energy grows at particle 7", file=sys.stderr)
         sys.exit(2)
     (out / "checkpoint.h5").unlink(missing_ok=True)
-    put(out / "front.csv", "time_s,flow_front_m,flowed_mass_kg\\n0,0,0\\n1,%g,1000\\n" % (10 / factor))
+    put(out / "front.csv", "time_s,flow_front_m,runout_m,flowed_mass_kg\\n0,0,0,0\\n1,%g,%g,1000\\n" % (10 / factor, 10 / factor))
     put(out / "frames" / "runout_00000.vtkhdf", "x" * 100000)
     cell = {{"coarse": 1.0, "default": 0.75, "fine": 0.375}}[words[words.index("--size") + 1]]
     put(out / "summary.json", json.dumps({{"runout_m": (10 + 4 * (cell - 0.75)) / factor, "flowed_volume_m3": 100 / factor, "flowed_mass_kg": 2e5 / factor,

@@ -86,13 +86,19 @@ with tempfile.TemporaryDirectory() as name:
             (["correlations"], [{"between": ["factor", "cap"], "rank": 0.5}], "only distributions"),
             (["correlations"], [{"between": [a, b], "rank": -0.9} for a, b in (("factor", "angle"), ("angle", "bins"), ("factor", "bins"))], "contradict"),
             ([P, "motion"], {"key": "fem:/shake/motion", "folder": "nowhere"}, "there is no folder"),
-            ([P, "motion"], {"key": "fem:/shake/motion", "folder": ".", "pattern": "*.AT2"}, "no file of")):
+            ([P, "motion"], {"key": "fem:/shake/motion", "folder": ".", "pattern": "*.AT2"}, "no file of"),
+            ([P, "cap"], {"key": "mpm:/damping/local", "values": [1.0], "scales": True}, "mpm:/damping/local is \"nothing\" in the case file"),
+            ([P, "cap", "key"], "mpm:/terrain/7/friction", "there is no '7' at '/terrain'")):
         try:
             read(changed(way, value))
         except design.DesignError as error:
             assert words in str(error) and str(path) in str(error), (way, str(error))
         else:
             raise AssertionError(f"{way} = {value} was taken")
+    # A key that the file lacks: the run without it has the program's default, which nobody here knows.
+    lacking = read({"design": "grid", "parameters": {"damping": {"key": "mpm:/damping/local", "values": [0.0, 0.05]}}})
+    assert lacking.parameters[0].base is None and design.settings_of(lacking, lacking.members[1], contents) == {"mpm": ["/damping/local=0.05"]}
+    assert design.what_if.case_with(case / "mpm.json", ["/damping/local=0.05"])["damping"] == {"local": 0.05}
     folder = read({"design": "grid", "parameters": {"motion": {"key": "fem:/shake/motion", "folder": ".", "pattern": "*.csv"}}})
     assert folder.members == [{"motion": "motion.csv"}], folder.members
 print("sweep files mean what they say")

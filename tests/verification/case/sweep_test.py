@@ -1,5 +1,5 @@
-"""make sweep: each member once, only the new ones of a grown sweep, a failed one named while the rest finish, going on after a kill, and no more
-kept than numbers.
+"""make sweep: each member once, only the new ones of a grown sweep, a failed one named while the rest finish and tried again when asked, going on after a
+kill, no more kept than numbers, and nothing that no sweep refers to after make prune.
 
 Usage: sweep_test.py SOURCE_FOLDER
 """
@@ -52,7 +52,9 @@ with tempfile.TemporaryDirectory() as name:
     assert "member 2: mpm: [error] mpm_stage: the computation failed: energy grows at particle 7" in result.stderr, result.stderr
     assert "a number above 0 is allowed" in result.stderr and "3 of 5 members done, 2 failed" in result.stdout, (result.stdout, result.stderr)
     assert [row["member"] for row in csv.DictReader((folder / "failed.csv").open())] == ["2", "4"]
-    assert clone.make("sweep-files", status=2)[1] == [f"{FACTOR}{f}" for f in (-1.0, 4.0)], "the failed ones alone are tried again"
+    result, ran = clone.make("sweep-files", status=2)
+    assert ran == [] and "2 failed before (RETRY=1 tries them again)" in result.stdout and "energy grows at particle 7" in result.stderr, (ran, result.stdout)
+    assert clone.make("sweep-files", "RETRY=1", status=2)[1] == [f"{FACTOR}{f}" for f in (-1.0, 4.0)], "the failed ones alone are tried again"
 
     # Stages before the runout: shared ones once, others go with their member; a failed one is the reason of all that need it.
     shaken = {"design": "grid", "parameters": {"peak": {"key": "fem:/shake/peak_acceleration", "values": [2.0, 60.0]}, **copy.deepcopy(FACTORS["parameters"])}}
@@ -64,6 +66,22 @@ with tempfile.TemporaryDirectory() as name:
     clone.sweep_file({"design": "grid", "parameters": {"peak": {"key": "fem:/shake/peak_acceleration", "values": [4.0]}}})
     kept = set(store.glob("shake-*"))
     assert len(clone.make("sweep-files", status=0)[1]) == 3 and set(store.glob("shake-*")) == kept, "a shaking that one member has goes with it"
+
+    # What no sweep refers to any more goes, and nothing else.
+    members = lambda: {path.parent.name for path in store.glob("mpm-*/member.json")}  # noqa: E731
+    clone.sweep_file(FACTORS, "other")
+    clone.make("sweep-files", "SWEEP=other", status=0)
+    before = len(members())
+    held = subprocess.Popen([sys.executable, "cases/run/lock.py", str(folder / ".lock"), "--", "sleep", "30"], cwd=clone.root)
+    while not (folder / ".lock").exists() or "process" not in (folder / ".lock").read_text():
+        time.sleep(0.02)
+    time.sleep(0.2)
+    assert "nothing is removed" in clone.make("prune", status=2)[0].stderr and len(members()) == before
+    held.kill()
+    held.wait()
+    result, _ = clone.make("prune", status=0)
+    assert before > 5 and len(members()) == 5 and "which 2 sweeps refer to" in result.stdout, (before, result.stdout)
+    assert clone.make("sweep-files", status=0)[1] == clone.make("sweep-files", "SWEEP=other", status=0)[1] == []
 
     # Killed half-way, softly and hard, it goes on with what is missing; a member that was interrupted resumes.
     many = copy.deepcopy(FACTORS)
@@ -106,5 +124,5 @@ with tempfile.TemporaryDirectory() as name:
     clone.sweep_file(full)
     result, _ = clone.make("sweep-files", status=2, preexec_fn=small_files)
     assert "File too large" in result.stderr and "0 of 2 members done, 2 failed" in result.stdout, (result.stdout, result.stderr)
-    assert len(clone.make("sweep-files", status=0)[1]) == 2
+    assert clone.make("sweep-files", status=2)[1] == [] and len(clone.make("sweep-files", "RETRY=1", status=0)[1]) == 2
 print("each member once")
