@@ -35,9 +35,10 @@ void integrate(const Path& path, Motion& motion) {
   motion.integrate();
   for (const double v : motion.velocity)
     if (!std::isfinite(v))
-      throw InputError(fmt::format("{}: its accelerations add up to a velocity beyond any number; are they and their "
-                                   "unit right?",
-                                   path.string()));
+      throw InputError(
+          fmt::format("{}: its accelerations add up to a velocity beyond any number; are they and their "
+                      "unit right?",
+                      path.string()));
 }
 
 Lines lines_of(const Path& path) {

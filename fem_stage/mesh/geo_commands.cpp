@@ -105,7 +105,8 @@ void check(const fs::path& file, std::set<fs::path>& seen) {
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   // Where a text ends for gmsh and goes on here, what is hidden behind it cannot be told.
   if (const auto at = text.find('\0'); at != std::string::npos)
-    throw InputError(fmt::format("{}: line {}: a byte 0, which no geometry has: it is no text, or damaged", file.string(),
+    throw InputError(fmt::format("{}: line {}: a byte 0, which no geometry has: it is no text, or damaged",
+                                 file.string(),
                                  1 + std::count(text.begin(), text.begin() + static_cast<long>(at), '\n')));
   const auto tokens = tokens_of(text);
   constexpr std::array programs = {"SystemCall", "NonBlockingSystemCall", "System", "OnelabRun", "ExternalProcess"};
