@@ -108,8 +108,8 @@ void echo_options(const std::string& title, const std::vector<std::string>& line
   std::vector<std::string> differing;
   for (const auto& line : lines)
     if (line.find("  (default: ") != std::string::npos) differing.push_back(line);
-  spdlog::info("{}: {} of {} options differ from their defaults{} (all of them: {})", title, differing.size(),
-               lines.size(), differing.empty() ? "" : ":", all.string());
+  spdlog::info("{}: {} of {} options differ from their defaults (all of them: {})", title, differing.size(),
+               lines.size(), all.string());
   for (const auto& line : differing) spdlog::info("  {}", line);
 }
 

@@ -93,10 +93,10 @@ void make_mesh(const Arguments& arguments) {
                summary["min_scaled_jacobian"].get<double>());
 }
 
-void tell_options(const Arguments& arguments, const FemCase& options, const std::string& stage) {
+void tell_options(const Arguments& arguments, const FemCase& options, const std::string& stage, bool echo = true) {
   const fs::path all = fs::path(arguments.folder) / (stage + ".options.txt");
   const std::string title = fmt::format("fem_stage {} {}", stage, arguments.case_file);
-  echo_options(title, options.echo, all);
+  if (echo) echo_options(title, options.echo, all);
   write_options(all, title, options.echo);
 }
 
@@ -148,7 +148,7 @@ void make_shake(const Arguments& arguments, bool echo) {
   FemCase options = read_fem_case(arguments.case_file, arguments.size);
   hold_output_folder(arguments.folder);
   const Motion motion = case_motion(options);
-  if (echo) tell_options(arguments, options, "shake");
+  tell_options(arguments, options, "shake", echo);
   options.provenance.add_file(mesh_path(arguments));
   if (!options.shake.motion.empty()) options.provenance.add_file(options.shake.motion);
   const fs::path start = arguments.from.empty() ? geostatic_path(arguments) : fs::path(arguments.from);
