@@ -5,6 +5,7 @@
 #include <hdf5.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <cerrno>
 #include <cstring>
@@ -103,9 +104,19 @@ int run_application(CLI::App& app, int argc, char** argv) {
   }
 }
 
-void echo_options(const std::string& title, const std::vector<std::string>& lines) {
-  spdlog::info("{}:", title);
-  for (const auto& line : lines) spdlog::info("  {}", line);
+void echo_options(const std::string& title, const std::vector<std::string>& lines, const std::filesystem::path& all) {
+  std::vector<std::string> differing;
+  for (const auto& line : lines)
+    if (line.find("  (default: ") != std::string::npos) differing.push_back(line);
+  spdlog::info("{}: {} of {} options differ from their defaults (all of them: {})", title, differing.size(),
+               lines.size(), all.string());
+  for (const auto& line : differing) spdlog::info("  {}", line);
+}
+
+void write_options(const std::filesystem::path& all, const std::string& title, const std::vector<std::string>& lines) {
+  std::string text = title + "\n";
+  for (const auto& line : lines) text += "  " + line + "\n";
+  write_text_file(all.string(), text);
 }
 
 void write_text_file(const std::string& path, const std::string& text) {

@@ -2,10 +2,13 @@
 // spdlog, and exceptions turned into exit statuses.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <functional>
+#include <filesystem>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace tailrun {
 
@@ -18,8 +21,10 @@ bool quiet();
 // (InputError or a wrong command line), 2 the computation failed (anything else).
 int run_application(CLI::App& app, int argc, char** argv);
 
-// Messages on standard error; `echo_options` prints a case file's options, one a line, unless --quiet.
-void echo_options(const std::string& title, const std::vector<std::string>& lines);
+// Of a case file's options (CaseFile::echo) those that differ from their defaults, on standard error unless --quiet,
+// and where all of them stand: `all`, which write_options makes.
+void echo_options(const std::string& title, const std::vector<std::string>& lines, const std::filesystem::path& all);
+void write_options(const std::filesystem::path& all, const std::string& title, const std::vector<std::string>& lines);
 
 // Writes a text file under a temporary name and renames it. Throws InputError when the place is wrong
 // (output_place.hpp), ComputationError when it cannot be written.

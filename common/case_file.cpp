@@ -150,14 +150,17 @@ const Json& CaseNode::require(const std::string& key, std::string_view wanted) c
                         near.empty() ? "" : fmt::format(" (found '{}' instead)", near)));
 }
 
-void CaseNode::record(const std::string& key, const std::string& value, std::string_view unit, bool is_default) const {
+void CaseNode::record(const std::string& key, const std::string& value, std::string_view unit,
+                      const std::optional<std::string>& fallback) const {
   const std::string place = child(pointer_, key);
   const std::string origin = state_->origin(place);
   std::string line =
-      fmt::format("{} = {}{}{}", place.substr(1), value, unit.empty() || unit == "1" ? "" : fmt::format(" {}", unit),
-                  is_default       ? "  (default)"
-                  : origin.empty() ? ""
-                                   : " " + origin);
+      fmt::format("{} = {}{}", place.substr(1), value, unit.empty() || unit == "1" ? "" : fmt::format(" {}", unit));
+  if (fallback && !find(key))
+    line += "  (default)";
+  else
+    line += (origin.empty() ? "" : " " + origin) +
+            (fallback && *fallback != value ? fmt::format("  (default: {})", *fallback) : "");
   // What is read for several things is told once.
   if (std::find(state_->echo.begin(), state_->echo.end(), line) == state_->echo.end())
     state_->echo.push_back(std::move(line));
@@ -174,14 +177,14 @@ double CaseNode::checked(const std::string& key, const Json& value, std::string_
 
 double CaseNode::number(const std::string& key, std::string_view unit, Range range) const {
   const double value = checked(key, require(key, fmt::format("a number [{}] in {}", unit, range.text())), unit, range);
-  record(key, fmt::format("{:g}", value), unit, false);
+  record(key, fmt::format("{:g}", value), unit);
   return value;
 }
 
 double CaseNode::number_or(const std::string& key, std::string_view unit, Range range, double fallback) const {
   const Json* json = find(key);
   const double value = json ? checked(key, *json, unit, range) : fallback;
-  record(key, fmt::format("{:g}", value), unit, !json);
+  record(key, fmt::format("{:g}", value), unit, fmt::format("{:g}", fallback));
   return value;
 }
 
@@ -190,66 +193,79 @@ std::optional<double> CaseNode::number_if(const std::string& key, std::string_vi
   return number(key, unit, range);
 }
 
-long CaseNode::integer(const std::string& key, long low, long high) const {
+long CaseNode::whole_number(const std::string& key, long low, long high) const {
   const Json& json = require(key, fmt::format("an integer in [{}, {}]", low, high));
   // Above the range of long the library would wrap round.
   const bool beyond = json.is_number_unsigned() &&
                       json.get<std::uint64_t>() > static_cast<std::uint64_t>(std::numeric_limits<long>::max());
   if (!json.is_number_integer() || beyond || json.get<long>() < low || json.get<long>() > high)
     fail(key, fmt::format("found {}, but an integer in [{}, {}] is required", kind(json), low, high));
-  record(key, std::to_string(json.get<long>()), "", false);
   return json.get<long>();
 }
 
+long CaseNode::integer(const std::string& key, long low, long high) const {
+  const long value = whole_number(key, low, high);
+  record(key, std::to_string(value), "");
+  return value;
+}
+
 long CaseNode::integer_or(const std::string& key, long low, long high, long fallback) const {
-  if (find(key)) return integer(key, low, high);
-  record(key, std::to_string(fallback), "", true);
-  return fallback;
+  const long value = find(key) ? whole_number(key, low, high) : fallback;
+  record(key, std::to_string(value), "", std::to_string(fallback));
+  return value;
 }
 
 bool CaseNode::boolean_or(const std::string& key, bool fallback) const {
   const Json* json = find(key);
   if (json && !json->is_boolean()) fail(key, fmt::format("found {}, but true or false is required", kind(*json)));
   const bool value = json ? json->get<bool>() : fallback;
-  record(key, value ? "true" : "false", "", !json);
+  record(key, value ? "true" : "false", "", fallback ? "true" : "false");
   return value;
 }
 
-std::string CaseNode::text(const std::string& key) const {
+std::string CaseNode::plain_text(const std::string& key) const {
   const Json& json = require(key, "a text");
   if (!json.is_string()) fail(key, fmt::format("found {}, but a text is required", kind(json)));
-  record(key, json.get<std::string>(), "", false);
   return json.get<std::string>();
 }
 
-std::string CaseNode::text_or(const std::string& key, const std::string& fallback) const {
-  if (find(key)) return text(key);
-  record(key, fallback, "", true);
-  return fallback;
+std::string CaseNode::text(const std::string& key) const {
+  const std::string value = plain_text(key);
+  record(key, value, "");
+  return value;
 }
 
-std::string CaseNode::choice(const std::string& key, const std::vector<std::string>& allowed) const {
+std::string CaseNode::text_or(const std::string& key, const std::string& fallback) const {
+  const bool given = find(key) != nullptr;
+  const std::string value = given ? plain_text(key) : fallback;
+  record(key, value, "", given && fallback.empty() ? std::nullopt : std::optional(fallback));
+  return value;
+}
+
+std::string CaseNode::word_of(const std::string& key, const std::vector<std::string>& allowed) const {
   const Json& json = require(key, "one of " + joined(allowed));
   if (!json.is_string()) fail(key, fmt::format("found {}, but one of {} is required", kind(json), joined(allowed)));
   const auto value = json.get<std::string>();
-  for (const auto& word : allowed) {
-    if (word != value) continue;
-    record(key, value, "", false);
-    return value;
-  }
+  if (std::find(allowed.begin(), allowed.end(), value) != allowed.end()) return value;
   fail(key,
        fmt::format("found '{}', but allowed is one of {}.{}", value, joined(allowed), did_you_mean(value, allowed)));
 }
 
-std::string CaseNode::choice_or(const std::string& key, const std::vector<std::string>& allowed,
-                                const std::string& fallback) const {
-  if (find(key)) return choice(key, allowed);
-  record(key, fallback, "", true);
-  return fallback;
+std::string CaseNode::choice(const std::string& key, const std::vector<std::string>& allowed) const {
+  const std::string value = word_of(key, allowed);
+  record(key, value, "");
+  return value;
 }
 
-std::vector<double> CaseNode::numbers(const std::string& key, std::string_view unit, Range range,
-                                      std::size_t count) const {
+std::string CaseNode::choice_or(const std::string& key, const std::vector<std::string>& allowed,
+                                const std::string& fallback) const {
+  const std::string value = find(key) ? word_of(key, allowed) : fallback;
+  record(key, value, "", fallback);
+  return value;
+}
+
+std::vector<double> CaseNode::list_of_numbers(const std::string& key, std::string_view unit, Range range,
+                                              std::size_t count) const {
   const std::string wanted =
       count ? fmt::format("a list of {} numbers [{}]", count, unit) : fmt::format("a list of numbers [{}]", unit);
   const Json& json = require(key, wanted);
@@ -258,28 +274,31 @@ std::vector<double> CaseNode::numbers(const std::string& key, std::string_view u
   std::vector<double> values;
   for (std::size_t i = 0; i < json.size(); ++i)
     values.push_back(checked(child(key, std::to_string(i)), json[i], unit, range));
-  record(key, json.dump(), unit, false);
+  return values;
+}
+
+std::vector<double> CaseNode::numbers(const std::string& key, std::string_view unit, Range range,
+                                      std::size_t count) const {
+  std::vector<double> values = list_of_numbers(key, unit, range, count);
+  record(key, find(key)->dump(), unit);
   return values;
 }
 
 std::vector<double> CaseNode::numbers_or(const std::string& key, std::string_view unit, Range range,
                                          const std::vector<double>& fallback, std::size_t count) const {
-  if (find(key)) return numbers(key, unit, range, count);
-  record(key, Json(fallback).dump(), unit, true);
-  return fallback;
+  std::vector<double> values = find(key) ? list_of_numbers(key, unit, range, count) : fallback;
+  record(key, Json(values).dump(), unit, Json(fallback).dump());
+  return values;
 }
 
 std::vector<std::string> CaseNode::texts_or(const std::string& key, const std::vector<std::string>& fallback) const {
   const Json* json = find(key);
-  if (!json) {
-    record(key, Json(fallback).dump(), "", true);
-    return fallback;
-  }
   const auto wrong = [&](const Json& value) { return !value.is_string(); };
-  if (!json->is_array() || std::any_of(json->begin(), json->end(), wrong))
+  if (json && (!json->is_array() || std::any_of(json->begin(), json->end(), wrong)))
     fail(key, fmt::format("found {}, but a list of texts is required", kind(*json)));
-  record(key, json->dump(), "", false);
-  return json->get<std::vector<std::string>>();
+  const auto values = json ? json->get<std::vector<std::string>>() : fallback;
+  record(key, Json(values).dump(), "", Json(fallback).dump());
+  return values;
 }
 
 std::vector<double> CaseNode::table(const std::string& key, std::string_view unit, std::size_t columns) const {
@@ -293,7 +312,7 @@ std::vector<double> CaseNode::table(const std::string& key, std::string_view uni
       fail(place, fmt::format("found {}, but {} numbers [{}] are required", kind(json[row]), columns, unit));
     for (const auto& value : json[row]) values.push_back(checked(place, value, unit, Range::any()));
   }
-  record(key, fmt::format("{} rows", json.size()), unit, false);
+  record(key, fmt::format("{} rows", json.size()), unit);
   return values;
 }
 

@@ -50,9 +50,11 @@ class CaseFile {
 
   CaseNode root() const;
   const std::filesystem::path& path() const;
-  const std::string& text() const;        // the file as read, with --set's values
-  void finish() const;                    // throws InputError on the first key that nobody asked for
-  std::vector<std::string> echo() const;  // every option read: pointer, value, unit, and whether it is the default
+  const std::string& text() const;  // the file as read, with --set's values
+  void finish() const;              // throws InputError on the first key that nobody asked for
+  // Every option read, a line each: pointer, value, unit, and at its end "(default)" or, of what the file says and is
+  // not the default, "(default: <value>)".
+  std::vector<std::string> echo() const;
 
  private:
   friend class CaseNode;
@@ -111,7 +113,14 @@ class CaseNode {
   const nlohmann::ordered_json* find(const std::string& key) const;
   const nlohmann::ordered_json& require(const std::string& key, std::string_view wanted) const;
   double checked(const std::string& key, const nlohmann::ordered_json& value, std::string_view unit, Range range) const;
-  void record(const std::string& key, const std::string& value, std::string_view unit, bool is_default) const;
+  // `fallback`: what holds without the key, for a key that may be absent.
+  void record(const std::string& key, const std::string& value, std::string_view unit,
+              const std::optional<std::string>& fallback = {}) const;
+  long whole_number(const std::string& key, long low, long high) const;
+  std::string plain_text(const std::string& key) const;
+  std::string word_of(const std::string& key, const std::vector<std::string>& allowed) const;
+  std::vector<double> list_of_numbers(const std::string& key, std::string_view unit, Range range,
+                                      std::size_t count) const;
   std::vector<CaseNode> elements(const std::string& key, const nlohmann::ordered_json& value) const;
 
   std::shared_ptr<CaseFile::State> state_;

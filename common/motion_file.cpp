@@ -31,6 +31,16 @@ void require_possible_step(const Path& path, std::size_t line, double step) {
          fmt::format("the time step is {:g} s, but at least {:g} s is required: is the unit right?", step, shortest));
 }
 
+void integrate(const Path& path, Motion& motion) {
+  motion.integrate();
+  for (const double v : motion.velocity)
+    if (!std::isfinite(v))
+      throw InputError(
+          fmt::format("{}: its accelerations add up to a velocity beyond any number; are they and their "
+                      "unit right?",
+                      path.string()));
+}
+
 Lines lines_of(const Path& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError(fmt::format("{}: no such motion file, or it cannot be read", path.string()));
@@ -41,6 +51,27 @@ Lines lines_of(const Path& path) {
     lines.push_back(line);
   }
   return lines;
+}
+
+// Of text, which is searched by regular expressions: the library's take a stack frame for each character.
+constexpr std::size_t longest_text = 1000;
+
+const std::string& text_line(const Path& path, const Lines& lines, std::size_t i) {
+  if (lines[i].size() > longest_text)
+    fail(path, i,
+         fmt::format("has {} characters, but a line of text has at most {}; is this a motion, and do its lines end?",
+                     lines[i].size(), longest_text));
+  return lines[i];
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> words;
+  for (std::size_t at = 0; (at = text.find_first_not_of(" \t", at)) != std::string::npos;) {
+    const std::size_t end = std::min(text.find_first_of(" \t", at), text.size());
+    words.push_back(text.substr(at, end - at));
+    at = end;
+  }
+  return words;
 }
 
 std::string shown(std::string_view text) {
@@ -146,10 +177,9 @@ std::vector<std::string> cells_of(const Path& path, std::size_t line, const std:
     }
     while (cells.size() > 2 && cells.back().empty()) cells.pop_back();  // a comma at the line's end
   } else {
+    if (!header) return words_of(text);
     static const std::regex word(R"([^\s([]*(?:\s*[(\[][^)\]]*[)\]])|\S+)");
-    const std::regex plain(R"(\S+)");
-    for (std::sregex_iterator it(text.begin(), text.end(), header ? word : plain), last; it != last; ++it)
-      cells.push_back(it->str());
+    for (std::sregex_iterator it(text.begin(), text.end(), word), last; it != last; ++it) cells.push_back(it->str());
   }
   return cells;
 }
@@ -200,7 +230,7 @@ Motion read_at2(const Path& path) {
   std::optional<Counts> counts;
   std::vector<std::size_t> header;
   for (std::size_t i = 0; i < std::min<std::size_t>(lines.size(), 12) && !counts; ++i) {
-    counts = counts_in(path, lines[i], i);
+    counts = counts_in(path, text_line(path, lines, i), i);
     if (!counts) header.push_back(i);
   }
   if (!counts)
@@ -212,7 +242,10 @@ Motion read_at2(const Path& path) {
   motion.name = path.filename().string();
   motion.time_step = counts->time_step;
   std::size_t i = counts->line + 1;
-  for (; i < lines.size() && i < counts->line + 6 && !begins_like_number(lines[i]); ++i) header.push_back(i);
+  for (; i < lines.size() && i < counts->line + 6 && !begins_like_number(lines[i]); ++i) {
+    text_line(path, lines, i);
+    header.push_back(i);
+  }
   const auto stated = stated_factor(path, lines, header);
   if (!stated) add_warning(fmt::format("{}: no line above the values says their unit; g is taken", path.string()));
   const double factor = stated.value_or(standard_gravity);
@@ -233,7 +266,7 @@ Motion read_at2(const Path& path) {
   if (motion.acceleration.size() < 2)
     throw InputError(
         fmt::format("{}: has {} values, but at least two are required", path.string(), motion.acceleration.size()));
-  motion.integrate();
+  integrate(path, motion);
   return motion;
 }
 
@@ -244,7 +277,7 @@ Motion read_motion_csv(const Path& path) {
   std::vector<std::size_t> header;
   std::size_t i = 0;
   for (; i < std::min<std::size_t>(lines.size(), 50) && !begins_like_number(lines[i]); ++i)
-    if (lines[i].find_first_not_of(" \t") != std::string::npos) header.push_back(i);
+    if (text_line(path, lines, i).find_first_not_of(" \t") != std::string::npos) header.push_back(i);
   const Columns columns = columns_of(path, lines, header);
   std::vector<double> times;
   std::vector<std::size_t> rows;
@@ -276,7 +309,7 @@ Motion read_motion_csv(const Path& path) {
   require_possible_step(path, rows.front(), motion.time_step);
   if (std::abs(times.front()) > 0.5 * motion.time_step)
     add_warning(fmt::format("{}: begins at {:g} s; the motion is moved to begin at 0", path.string(), times.front()));
-  motion.integrate();
+  integrate(path, motion);
   return motion;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <regex>
 
 namespace tailrun {
@@ -62,8 +63,13 @@ std::optional<MotionUnit> motion_unit(std::string_view text, bool whole) {
   const std::string end = whole ? "[.,;)\\]]*$" : "(?![A-Z0-9])";
   static const std::string length = "(MM|CM|M|METERS?|METRES?|CENTIMETERS?|CENTIMETRES?|INCH|INCHES|IN|FT|FOOT|FEET)";
   const std::string s = second_words;
+  // Making an expression takes far longer than looking with it.
+  thread_local std::map<std::string, std::regex> made;
   const auto found = [&](const std::string& pattern, std::smatch& match) {
-    return std::regex_search(line, match, std::regex("^(?:" + pattern + ")" + end));
+    const std::string whole_pattern = "^(?:" + pattern + ")" + end;
+    auto at = made.find(whole_pattern);
+    if (at == made.end()) at = made.emplace(whole_pattern, std::regex(whole_pattern)).first;
+    return std::regex_search(line, match, at->second);
   };
   std::smatch match;
   const auto unit = [&](MotionQuantity quantity, double factor) {

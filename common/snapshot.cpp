@@ -158,7 +158,7 @@ Snapshot read_snapshot(const std::filesystem::path& path) {
         fmt::format("gravity_m_s2 is {:g} and fluid_density_kg_m3 {:g}, but 0 or more (downwards) and more than 0 are "
                     "required",
                     snapshot.gravity, snapshot.fluid_density));
-  const auto base_velocity = file.doubles("/tailrun/base_velocity", 2);
+  const auto base_velocity = file.doubles("/tailrun/base_velocity", 2, 1);
   snapshot.base_velocity = {base_velocity[0], base_velocity[1]};
   snapshot.region_names = file.texts("/tailrun/region_names");
   if (file.shape("/tailrun/phreatic_line")[0] > 0)

@@ -1,6 +1,9 @@
 #include "common/vtkhdf.hpp"
 
+#include <nlohmann/json.hpp>
 #include <vector>
+
+#include "common/application.hpp"
 
 namespace tailrun {
 
@@ -39,6 +42,15 @@ std::vector<double> with_third(std::span<const double> plane) {
     space[3 * i + 1] = plane[2 * i + 1];
   }
   return space;
+}
+
+void write_file_series(const std::filesystem::path& path, const std::vector<std::string>& names,
+                       const std::vector<double>& times) {
+  nlohmann::ordered_json index;
+  index["file-series-version"] = "1.0";
+  index["files"] = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < names.size(); ++k) index["files"].push_back({{"name", names[k]}, {"time", times[k]}});
+  write_text_file(path.string(), index.dump(1) + "\n");
 }
 
 }  // namespace tailrun

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,5 +23,10 @@ void write_unstructured_grid(Hdf5Writer& file, std::span<const double> points,
 
 // (n, 2) to (n, 3) with a zero third component: VTK's vectors have three.
 std::vector<double> with_third(std::span<const double> plane);
+
+// The index that ParaView opens as one series in time: `path` ends in ".vtkhdf.series" and lies beside the files, whose
+// own names may end otherwise. Times in s. Throws as write_text_file does.
+void write_file_series(const std::filesystem::path& path, const std::vector<std::string>& names,
+                       const std::vector<double>& times);
 
 }  // namespace tailrun

@@ -12,16 +12,20 @@
 //   fem_stage geostatic fem.json --mesh out/fem/mesh.msh -o out/fem   -> geostatic.h5
 //   fem_stage shake fem.json --geostatic out/fem/geostatic.h5 -o out/fem  -> snapshots, histories, summary.json
 //   fem_stage shake fem.json --from out/fem/last_good_t07.1.h5 -o out/fem2   goes on from there
+//   fem_stage shake ... --resume                       goes on from the folder's checkpoint after an interruption
 //   fem_stage consolidate fem.json --mesh out/fem/mesh.msh --from out/fem/snapshot_t16.000.h5 -o out/consolidation
 //   fem_stage element test.json -o out.csv             one material point under a laboratory test's loading
 //   fem_stage calibrate target.json -o out/calibration parameters from a target strength
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <filesystem>
 
 #include "common/application.hpp"
+#include "common/case_settings.hpp"
 #include "common/error.hpp"
+#include "common/interrupt.hpp"
 #include "common/output_lock.hpp"
 #include "common/output_place.hpp"
 #include "common/patient_threads.hpp"
@@ -42,7 +46,7 @@ namespace {
 
 struct Arguments {
   std::string case_file, size, folder = ".", mesh, geostatic, from;
-  bool trust_geometry = false;
+  bool trust_geometry = false, resume = false;
 };
 
 fs::path mesh_path(const Arguments& arguments) {
@@ -89,12 +93,19 @@ void make_mesh(const Arguments& arguments) {
                summary["min_scaled_jacobian"].get<double>());
 }
 
+void tell_options(const Arguments& arguments, const FemCase& options, const std::string& stage, bool echo = true) {
+  const fs::path all = fs::path(arguments.folder) / (stage + ".options.txt");
+  const std::string title = fmt::format("fem_stage {} {}", stage, arguments.case_file);
+  if (echo) echo_options(title, options.echo, all);
+  write_options(all, title, options.echo);
+}
+
 // Mesh -> geostatic.h5: the dam at rest before the earthquake.
 void make_geostatic(const Arguments& arguments) {
   FemCase options = read_fem_case(arguments.case_file, arguments.size);
   hold_output_folder(arguments.folder);
   require_replaceable(fs::path(arguments.folder) / "geostatic.h5");
-  echo_options(arguments.case_file, options.echo);
+  tell_options(arguments, options, "geostatic");
   options.provenance.add_file(mesh_path(arguments));
   const Model model = model_of(arguments, options);
   MaterialPoints points = make_material_points(model);
@@ -123,12 +134,21 @@ void check_restart(const Arguments& arguments, const FemCase& options, const Sta
                      ": was made with /shake/large_displacement, and its stresses are in turned frames; switch it on");
 }
 
+std::string resume_command(const Arguments& arguments) {
+  std::string command = fmt::format("fem_stage shake {} -o {}", arguments.case_file, arguments.folder);
+  for (const auto& [option, value] :
+       {std::pair{"--size", arguments.size}, std::pair{"--mesh", arguments.mesh},
+        std::pair{"--geostatic", arguments.geostatic}, std::pair{"--from", arguments.from}})
+    if (!value.empty()) command += fmt::format(" {} {}", option, value);
+  return command + settings_as_options() + " --resume";
+}
+
 // geostatic.h5 (or any state file) and the motion -> snapshots, histories, summary.json.
 void make_shake(const Arguments& arguments, bool echo) {
   FemCase options = read_fem_case(arguments.case_file, arguments.size);
   hold_output_folder(arguments.folder);
   const Motion motion = case_motion(options);
-  if (echo) echo_options(arguments.case_file, options.echo);
+  tell_options(arguments, options, "shake", echo);
   options.provenance.add_file(mesh_path(arguments));
   if (!options.shake.motion.empty()) options.provenance.add_file(options.shake.motion);
   const fs::path start = arguments.from.empty() ? geostatic_path(arguments) : fs::path(arguments.from);
@@ -139,7 +159,12 @@ void make_shake(const Arguments& arguments, bool echo) {
   read_state(start, model, state, points);
   check_shake_output(options, static_cast<double>(fs::file_size(start)), arguments.folder);
   if (!arguments.from.empty()) check_restart(arguments, options, state, true);
-  const ShakeReport report = run_shake(model, points, state, motion, arguments.folder);
+  ShakeControl control;
+  control.resume = arguments.resume;
+  control.interruption = [](long) { return noted_signal(); };
+  control.resume_command = resume_command(arguments);
+  note_signals();
+  const ShakeReport report = run_shake(model, points, state, motion, arguments.folder, control);
   const auto summary = shake_summary(model, motion, report);
   write_text_file((fs::path(arguments.folder) / "summary.json").string(), summary.dump(2) + "\n");
   if (!report.failure.empty())
@@ -157,7 +182,7 @@ void make_shake(const Arguments& arguments, bool echo) {
 void make_consolidation(const Arguments& arguments) {
   FemCase options = read_fem_case(arguments.case_file, arguments.size);
   hold_output_folder(arguments.folder);
-  echo_options(arguments.case_file, options.echo);
+  tell_options(arguments, options, "consolidation");
   options.provenance.add_file(mesh_path(arguments));
   options.provenance.add_file(arguments.from);
   const Model model = model_of(arguments, options);
@@ -208,6 +233,8 @@ int main(int argc, char** argv) {
   shake->add_option("--geostatic", arguments.geostatic,
                     "Geostatic state (default: geostatic.h5 in the results' folder)");
   shake->add_option("--from", arguments.from, "Go on from this state (snapshot_t*.h5 or last_good_t*.h5)");
+  shake->add_flag("--resume", arguments.resume,
+                  "Go on from the results' folder's shake_checkpoint.h5, written by the same input");
   shake->callback([&] { make_shake(arguments, true); });
 
   CLI::App* consolidate = add_stage("consolidate", "Drainage and settlement after the shaking");

@@ -15,12 +15,13 @@
 // summary.json. Exit status: 0 done, 1 bad input, 2 the computation failed or was interrupted (the last good state is
 // on disk; after SIGINT or SIGTERM it is the state of that moment).
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "common/application.hpp"
 #include "common/case_settings.hpp"
+#include "common/interrupt.hpp"
 #include "common/output_lock.hpp"
 #include "common/patient_threads.hpp"
-#include "mpm_stage/run/interrupt.hpp"
 #include "mpm_stage/run/runout.hpp"
 #include "mpm_stage/scene/request_checks.hpp"
 #include "mpm_stage/scene/scene.hpp"
@@ -55,7 +56,9 @@ int main(int argc, char** argv) {
     file.finish();
     hold_output_folder(output);
     if (!control.resume) check_space(scene, output);
-    echo_options(case_path.string(), file.echo());
+    const std::string title = "mpm_stage run " + case_path.string();
+    echo_options(title, file.echo(), output / "options.txt");
+    write_options(output / "options.txt", title, file.echo());
     Provenance provenance;
     provenance.program = "mpm_stage";
     provenance.add_text(case_path, file.text());

@@ -13,6 +13,7 @@
 //   transfer_tool strength transfer.json -o strength.csv
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include <cmath>
 #include <filesystem>
@@ -31,6 +32,7 @@
 #include "transfer_tool/inspect/file_report.hpp"
 #include "transfer_tool/options/transfer_case.hpp"
 #include "transfer_tool/sample/pond_reach.hpp"
+#include "transfer_tool/sample/request_checks.hpp"
 
 namespace {
 
@@ -40,6 +42,10 @@ using namespace tailrun::transfer;
 struct RunOptions {
   std::string case_path, snapshot_path, geostatic_path, output_path, size;
 };
+
+std::filesystem::path options_of(const std::filesystem::path& output) {
+  return output.parent_path() / (output.stem().string() + ".options.txt");
+}
 
 Snapshot read_state(const RunOptions& options, Provenance& provenance) {
   Snapshot snapshot = read_snapshot(options.snapshot_path);
@@ -76,10 +82,13 @@ void run(const RunOptions& options) {
   provenance.add_text(file.path(), file.text());
   const Snapshot snapshot = read_state(options, provenance);
   const TransferCase wanted = read_transfer_case(file, snapshot.region_names, options.size);
-  echo_options("transfer_tool run " + options.case_path, file.echo());
+  const std::string title = "transfer_tool run " + options.case_path;
+  const std::filesystem::path all = options_of(options.output_path);
+  echo_options(title, file.echo(), all);
 
   // 1. Sample
   const std::vector<bool> kept = kept_elements(snapshot, wanted.sampling);
+  check_request(file, options.size, snapshot, kept, wanted.sampling, options.output_path);
   const SamplePoints points = sample(snapshot, kept, wanted.sampling);
   warn_about(snapshot, wanted, kept, points);
   check_state(columns_of(snapshot, options.snapshot_path, kept, true));
@@ -101,14 +110,16 @@ void run(const RunOptions& options) {
   const Audit result = audit(
       snapshot, kept, wanted.state.remove_base_motion ? snapshot.base_velocity : std::array<double, 2>{}, particles);
   require_conserved(result);
-  fmt::print("{} particles at t = {:g} s, {:.3g} m apart on average\n\n{}", particles.count(), particles.time,
-             particles.particle_size, audit_table(result));
+  if (!quiet())
+    fmt::print("{} particles at t = {:g} s, {:.3g} m apart on average\n\n{}", particles.count(), particles.time,
+               particles.particle_size, audit_table(result));
 
   // 5. Write
   particles.notes["audit"] = audit_json(result).dump(1);
   particles.notes["assignment"] = assignment.record.dump(1);
   if (!warnings().empty()) particles.notes["warnings"] = nlohmann::ordered_json(warnings()).dump(1);
   write_particles(options.output_path, particles, provenance);
+  write_options(all, title, file.echo());
   spdlog::info("wrote {}", options.output_path);
 }
 
@@ -118,10 +129,13 @@ void import(const std::string& case_path, const std::string& output_path) {
   const CaseFile file(case_path);
   const Snapshot snapshot = import_tables(file, provenance);
   check_state(columns_of(snapshot, case_path, {}, true));
-  echo_options("transfer_tool import " + case_path, file.echo());
+  const std::string title = "transfer_tool import " + case_path;
+  echo_options(title, file.echo(), options_of(output_path));
   write_snapshot(output_path, snapshot, provenance);
-  fmt::print("{} nodes, {} elements, {} regions at t = {:g} s: {}\n", snapshot.nodes(), snapshot.elements(),
-             snapshot.region_names.size(), snapshot.time, output_path);
+  write_options(options_of(output_path), title, file.echo());
+  if (!quiet())
+    fmt::print("{} nodes, {} elements, {} regions at t = {:g} s: {}\n", snapshot.nodes(), snapshot.elements(),
+               snapshot.region_names.size(), snapshot.time, output_path);
 }
 
 struct StrengthOptions {

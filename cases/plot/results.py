@@ -51,6 +51,11 @@ def strengths(mpm):
     return rows
 
 
+def energy_shares(mpm):
+    """Of what turned over; where next to nothing flowed, shares of the little that settling turns over say nothing."""
+    return mpm.get("energy", {}) if mpm.get("flowed_mass_kg", 1.0) > 0.01 * mpm.get("mass_kg", 0.0) else {}
+
+
 def runout(mpm):
     """Runout from the toe and freeboard lost, as mpm_stage defines them (docs/mpm.md)."""
     if "initial_toe_m" not in mpm:
@@ -100,8 +105,8 @@ def collect(results, phase):
             ("MPM", "mass that flowed, per m of dam", show(mpm.get("flowed_mass_kg", 0.0) / 1e3, 0), "t"),
             *runout(mpm),
             ("MPM", "largest displacement", show(mpm.get("largest_displacement_m"), 1), "m"),
-            ("MPM", "energy lost by the scheme", percent(mpm.get("energy", {}).get("lost_ratio")), "%"),
-            ("MPM", "  not in transfer or impacts", percent(mpm.get("energy", {}).get("residual_ratio")), "%"),
+            ("MPM", "energy lost by the scheme", percent(energy_shares(mpm).get("lost_ratio")), "%"),
+            ("MPM", "  not in transfer or impacts", percent(energy_shares(mpm).get("residual_ratio")), "%"),
             *strengths(mpm),
             ("MPM", "wall time", show(mpm.get("wall_seconds", {}).get("total"), 1), "s"),
         ]

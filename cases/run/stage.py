@@ -4,8 +4,8 @@
     stage.py shake --case cases/mochikoshi --fem out/mochikoshi --phase out/mochikoshi --bin build/bin   (what make calls)
 
 Beside the results, `.inputs/<stage>.json` keeps what they were computed from (stages.py) and which files they are. A program
-that refuses its input (exit status 1) changes nothing: files of the run before come back. An MPM run that was interrupted
-goes on from its checkpoint when its input is still the same.
+that refuses its input (exit status 1) changes nothing: files of the run before come back. A shake or runout that was
+interrupted goes on from its checkpoint when its input is still the same.
 """
 
 import argparse
@@ -119,7 +119,8 @@ def compute(chain, name, place):
         say_missing(chain, place)
         return 1
     command = chain.command(name, place)
-    goes_on = name == "mpm" and (root / "mpm" / "checkpoint.h5").exists() and (read_json(begun) or {}).get("key") == record["key"]
+    interrupted = stage.checkpoint and (root / stage.checkpoint).exists()
+    goes_on = interrupted and (read_json(begun) or {}).get("key") == record["key"]
     if goes_on:
         print(shlex.join([*command, "--resume"]), flush=True)
         status = call([*command, "--resume"])

@@ -28,6 +28,7 @@ class Stage:
     keep: tuple = ()  # keys of the case file that it depends on; all when empty
     drop: tuple = ()
     replaced: tuple = ()  # outputs of an earlier run that would stay beside the new ones
+    checkpoint: str = ""  # what its program goes on from with --resume after an interruption
 
 
 STAGES = {
@@ -36,12 +37,12 @@ STAGES = {
         Stage("mesh", "fem_stage", "fem", ("fem/mesh.*",), "fem/mesh.msh", keep=("mesh",)),
         Stage("geostatic", "fem_stage", "fem", ("fem/geostatic.*",), "fem/geostatic.h5", ("mesh",),
               drop=("shake", "output", "consolidation", "title")),
-        Stage("shake", "fem_stage", "fem", ("fem/snapshot_t*.h5", "fem/*.csv", "fem/summary.json"), "fem/.shaken", ("geostatic",),
-              drop=("consolidation",), replaced=("fem/snapshot_t*.h5",)),
-        Stage("import", "transfer_tool", "import", ("fem/snapshot.h5",), "fem/snapshot.h5"),
-        Stage("transfer", "transfer_tool", "transfer", ("particles.h5",), "particles.h5", ("shake", "import")),
-        Stage("mpm", "mpm_stage", "mpm", ("mpm/*.csv", "mpm/summary.json", "mpm/frames/*"), "mpm/.run", ("transfer",),
-              replaced=("mpm/frames", "mpm/sections.csv", "mpm/bodies.csv")),
+        Stage("shake", "fem_stage", "fem", ("fem/snapshot_t*.h5", "fem/*.series", "fem/*.csv", "fem/summary.json", "fem/shake.options.txt"), "fem/.shaken", ("geostatic",),
+              drop=("consolidation",), replaced=("fem/snapshot_t*.h5", "fem/*.series"), checkpoint="fem/shake_checkpoint.h5"),
+        Stage("import", "transfer_tool", "import", ("fem/snapshot.h5", "fem/snapshot.options.txt"), "fem/snapshot.h5"),
+        Stage("transfer", "transfer_tool", "transfer", ("particles.h5", "particles.options.txt"), "particles.h5", ("shake", "import")),
+        Stage("mpm", "mpm_stage", "mpm", ("mpm/*.csv", "mpm/summary.json", "mpm/options.txt", "mpm/frames/*"), "mpm/.run", ("transfer",),
+              replaced=("mpm/frames", "mpm/sections.csv", "mpm/bodies.csv"), checkpoint="mpm/checkpoint.h5"),
         Stage("consolidation", "fem_stage", "fem", ("consolidation/*",), "consolidation/.drained", ("shake",),
               replaced=("consolidation/*",)),
         Stage("fem-figures", "fem_figures.py", "", tuple(f"figures/{name}.png" for name in (

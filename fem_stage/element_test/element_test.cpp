@@ -65,7 +65,7 @@ int run_element_test(const ElementTestOptions& options) {
   const std::string summary = summary_of(test, result).dump(2) + "\n";
   if (!options.output.empty()) write_text_file(options.output.string(), csv_of(result));
   if (!options.summary.empty()) write_text_file(options.summary.string(), summary);
-  std::cout << summary;
+  if (!quiet() || options.summary.empty()) std::cout << summary;
   return exit_done;
 }
 

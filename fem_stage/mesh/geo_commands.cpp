@@ -97,10 +97,17 @@ bool is_command(const std::vector<Token>& tokens, std::size_t i) {
 }
 
 void check(const fs::path& file, std::set<fs::path>& seen) {
-  if (!seen.insert(fs::weakly_canonical(file)).second) return;
+  std::error_code failed;  // a name that cannot be one, which gmsh will not find either
+  const fs::path whole = fs::weakly_canonical(file, failed);
+  if (failed || !seen.insert(whole).second) return;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) return;  // gmsh says so
+  if (!stream || !fs::is_regular_file(file, failed)) return;  // gmsh says so
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  // Where a text ends for gmsh and goes on here, what is hidden behind it cannot be told.
+  if (const auto at = text.find('\0'); at != std::string::npos)
+    throw InputError(fmt::format("{}: line {}: a byte 0, which no geometry has: it is no text, or damaged",
+                                 file.string(),
+                                 1 + std::count(text.begin(), text.begin() + static_cast<long>(at), '\n')));
   const auto tokens = tokens_of(text);
   constexpr std::array programs = {"SystemCall", "NonBlockingSystemCall", "System", "OnelabRun", "ExternalProcess"};
   constexpr std::array files = {"Save", "Print", "CreateDir", "Plugin"};

@@ -189,7 +189,7 @@ class Audit {
     std::int64_t group = 0;
     for (std::int64_t k = 0; k < tags; ++k) {
       const auto tag = in_.integer("a tag of an element");
-      if (k == 0) group = std::abs(tag);
+      if (k == 0) group = tag;
       if (k == 3) groups.partitioned = true;  // even of one partition: the file may hold one of several
     }
     std::int64_t node[4] = {};
@@ -197,7 +197,9 @@ class Audit {
       const auto tag = element_node();
       if (k < 4) node[k] = tag;
     }
-    if (group > largest_tag) in_.fail(fmt::format("physical group {}: allowed are 1 to {}", group, largest_tag));
+    if (group > largest_tag || group < -largest_tag)  // below 0: the element is turned round in it
+      in_.fail(fmt::format("physical group {}: allowed are 1 to {}", group, largest_tag));
+    group = std::abs(group);
     if (type == line_type)
       groups.lines[static_cast<int>(group)].insert({std::min(node[0], node[1]), std::max(node[0], node[1])});
     if (type == quadrilateral_type) {
@@ -228,7 +230,9 @@ class Audit {
 
 MshGroups audit_msh(const std::filesystem::path& path, const std::string& source) {
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(fmt::format("{}: no such file, or it cannot be read", path.string()));
+  std::error_code ignored;
+  if (!stream || !std::filesystem::is_regular_file(path, ignored))
+    throw InputError(fmt::format("{}: no such file, or it cannot be read", path.string()));
   std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (text.rfind("\xEF\xBB\xBF", 0) == 0) text.erase(0, 3);
   Reader in(source, text);

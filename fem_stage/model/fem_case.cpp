@@ -176,12 +176,21 @@ std::vector<NamedPoint> read_points(const CaseNode& node, const std::string& key
   return points;
 }
 
-OutputOptions read_output(const CaseNode& node) {
+// What is asked for far more often than there are steps comes at every step.
+void warn_if_below_step(const CaseNode& node, const std::string& key, double interval, double step, const char* what) {
+  if (node.has(key) && interval > 0.0 && interval < 0.1 * step)
+    node.warn(key, fmt::format("{:g} s is far below the time step of {:g} s; there is {} at every step", interval, step,
+                               what));
+}
+
+OutputOptions read_output(const CaseNode& node, double step) {
   OutputOptions out;
   out.snapshots = node.numbers_or("snapshots", "s", Range::non_negative(), {});
   std::sort(out.snapshots.begin(), out.snapshots.end());
   out.snapshot_interval = node.number_or("snapshot_interval", "s", Range::non_negative(), 0.0);
   out.history_interval = node.number_or("history_interval", "s", Range::positive(), out.history_interval);
+  warn_if_below_step(node, "snapshot_interval", out.snapshot_interval, step, "a snapshot");
+  warn_if_below_step(node, "history_interval", out.history_interval, step, "a row");
   out.points = read_points(node, "points");
   out.elements = read_points(node, "elements");
   if (const auto liquefaction = node.object_if("liquefaction")) {
@@ -231,7 +240,9 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
                  "'averaged' needs pressure_quadrature 2: the consistent part is integrated by the same points");
 
   std::vector<std::string> material_names;
-  for (const auto& [name, node] : root.object("materials").members()) {
+  for (const auto& member : root.object("materials").members()) {
+    const std::string& name = member.first;
+    const CaseNode& node = member.second;
     material_names.push_back(name);
     out.materials.push_back(read_material(node, name));
     MaterialSetting setting;
@@ -275,7 +286,7 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
   out.geostatic = read_geostatic(root.object_or_empty("geostatic"));
   out.shake = read_shake(root.object("shake"));
   out.consolidation = read_consolidation(root.object_or_empty("consolidation"));
-  out.output = read_output(root.object_or_empty("output"));
+  out.output = read_output(root.object_or_empty("output"), out.shake.time_step);
   file.finish();
   out.echo = file.echo();
   out.provenance.program = "fem_stage";

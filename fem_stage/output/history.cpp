@@ -1,6 +1,7 @@
 #include "fem_stage/output/history.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -37,16 +38,30 @@ CsvFile::CsvFile(const std::filesystem::path& path, const std::vector<std::strin
   check();
 }
 
+CsvFile::~CsvFile() {
+  std::error_code ignored;
+  if (!temporary_.empty()) std::filesystem::remove(temporary_, ignored);
+}
+
 void CsvFile::row(const std::vector<double>& values) {
-  for (std::size_t i = 0; i < values.size(); ++i) stream_ << (i ? "," : "") << fmt::format("{:.8g}", values[i]);
-  stream_ << '\n';
+  write(fmt::format("{:.8g}", fmt::join(values, ",")));
+}
+
+void CsvFile::restore(const std::vector<std::string>& lines) {
+  for (const auto& line : lines) write(line);
+}
+
+void CsvFile::write(std::string line) {
+  stream_ << line << '\n';
   check();
+  lines_.push_back(std::move(line));
 }
 
 void CsvFile::finish() {
   stream_.close();  // also writes what is still held back
   check();
   std::filesystem::rename(temporary_, path_);
+  temporary_.clear();
 }
 
 void CsvFile::check() const {

@@ -18,18 +18,25 @@ struct BaseMotion {
   double acceleration = 0.0, velocity = 0.0, displacement = 0.0;
 };
 
-// A table of results, row by row, under a temporary name until finish(). All throw ComputationError when it cannot be
-// written.
+// A table of results, row by row, under a temporary name until finish(); an unfinished one is removed. All throw
+// ComputationError when it cannot be written.
 class CsvFile {
  public:
   CsvFile(const std::filesystem::path& path, const std::vector<std::string>& columns);
+  ~CsvFile();
+  CsvFile(const CsvFile&) = delete;
+  CsvFile& operator=(const CsvFile&) = delete;
   void row(const std::vector<double>& values);
   void finish();
+  const std::vector<std::string>& lines() const { return lines_; }  // the rows so far
+  void restore(const std::vector<std::string>& lines);
 
  private:
+  void write(std::string line);
   void check() const;
   std::filesystem::path path_, temporary_;
   std::ofstream stream_;
+  std::vector<std::string> lines_;
 };
 
 class History {
@@ -37,6 +44,8 @@ class History {
   History(const Model& model, const std::filesystem::path& folder);
   void record(const State& state, const BaseMotion& base);
   void finish() { file_.finish(); }
+  const std::vector<std::string>& lines() const { return file_.lines(); }
+  void restore(const std::vector<std::string>& lines) { file_.restore(lines); }
 
  private:
   const Model& model_;
@@ -55,6 +64,11 @@ class QualitySeries {
   void record(const State& state, const SolverCounts& counts, double wall_seconds);
   void finish() { file_.finish(); }
   const std::vector<QualityRow>& rows() const { return rows_; }
+  const std::vector<std::string>& lines() const { return file_.lines(); }
+  void restore(std::vector<QualityRow> rows, const std::vector<std::string>& lines) {
+    rows_ = std::move(rows);
+    file_.restore(lines);
+  }
 
  private:
   const Model& model_;

@@ -196,8 +196,20 @@ void ElementForces::commit(MaterialPoints& points, State& state, std::span<const
   }
   state.rotation = rotation_;
   state.turned_hourglass_force = hourglass_committed_;
-  moved_ = build_sspquadup(model_.mesh, state.displacement, model_.thickness, model_.options->hourglass_shape,
+  move_to(state.displacement);
+}
+
+void ElementForces::move_to(std::span<const double> displacement) {
+  geometry_.assign(displacement.begin(), displacement.end());
+  moved_ = build_sspquadup(model_.mesh, geometry_, model_.thickness, model_.options->hourglass_shape,
                            model_.options->pressure_points);
+}
+
+void ElementForces::use_matrix_basis(const MatrixBasis& basis) {
+  bulk_ = basis.bulk;
+  shear_ = basis.shear;
+  mobility_ = basis.mobility;
+  if (large_) move_to(basis.displacement);
 }
 
 void ElementForces::reset(const MaterialPoints& points, const State& state) {
@@ -211,8 +223,7 @@ void ElementForces::reset(const MaterialPoints& points, const State& state) {
     for (std::size_t e = 0; e < model_.count(); ++e)
       if (std::abs(turn_since(e, state.displacement, {})) > 1e-6)
         throw InputError("the state's frames have turned with the other /shake/spin, 'jaumann'; go on with that");
-  moved_ = build_sspquadup(model_.mesh, state.displacement, model_.thickness, model_.options->hourglass_shape,
-                           model_.options->pressure_points);
+  move_to(state.displacement);
 }
 
 void ElementForces::matrix(std::size_t e, double mass_factor, double stiffness_factor, double storage_factor,

@@ -18,6 +18,12 @@
 
 namespace tailrun::fem {
 
+// What element matrices are made of besides the model: the last commit's.
+struct MatrixBasis {
+  std::vector<double> bulk, shear, mobility;  // Pa, Pa, 1, (M)
+  std::vector<double> displacement;           // m, (N, 2), of the geometry; empty unless it moves
+};
+
 class ElementForces {
  public:
   // `damping` is a1 (s). With `large_displacement` the geometry follows the committed displacement and stress lives in
@@ -33,6 +39,7 @@ class ElementForces {
   // Accepts the last evaluation: hourglass forces, moduli for tangent and damping, geometry when it moves.
   void commit(MaterialPoints& points, State& state, std::span<const double> increment);
   void reset(const MaterialPoints& points, const State& state);  // takes over a state's hourglass forces and moduli
+  void restore_hourglass_work(std::vector<double> work) { hourglass_work_ = std::move(work); }  // J, (M), after reset()
   // Liquefied soil's residual strength, one point per element, beside the materials from now on. Before reset().
   void set_residual_floor(ResidualFloor floor) { residual_floor_ = std::move(floor); }
   void set_softening_scale(SofteningScale scale) { softening_scale_ = std::move(scale); }
@@ -43,6 +50,9 @@ class ElementForces {
   //   [ mass_factor M + stiffness_factor K,  -Q ; -Q^T,  -(storage_factor (S + S_alpha) + flow_factor H) ]
   void matrix(std::size_t e, double mass_factor, double stiffness_factor, double storage_factor, double flow_factor,
               double scale, double local[144]) const;
+
+  MatrixBasis matrix_basis() const { return {bulk_, shear_, mobility_, geometry_}; }
+  void use_matrix_basis(const MatrixBasis& basis);
 
   const SspQuadUp& elements() const { return large_ ? moved_ : model_.elements; }
   std::span<const double> trial_stress() const {
@@ -58,6 +68,7 @@ class ElementForces {
  private:
   void take_moduli(const MaterialPoints& points);
   double hourglass_modulus(std::size_t e) const;
+  void move_to(std::span<const double> displacement);
   double turn_since(std::size_t e, std::span<const double> displacement, std::span<const double> increment) const;
 
   const Model& model_;
@@ -71,6 +82,7 @@ class ElementForces {
   std::vector<double> hourglass_committed_, hourglass_trial_, hourglass_mode_;  // N, N, m: (M, 2)
   std::vector<double> hourglass_work_;                                          // J, (M)
   std::vector<double> mobility_;  // 1, (M): share of the permeability, below 1 in a soft fluid under suction
+  std::vector<double> geometry_;  // m, (N, 2): displacement of moved_
   std::vector<double> rotation_;  // rad, (M), only with large displacement
   std::vector<double> strain_, material_strain_, stress_, global_stress_, element_forces_;
   double material_seconds_ = 0.0;

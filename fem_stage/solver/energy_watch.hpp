@@ -20,6 +20,10 @@ class EnergyWatch {
   // s: from when on the ledger has been open, or the hourglass modes' share too large, until now.
   std::optional<double> open_since() const { return open_since_; }
   std::optional<double> hourglass_since() const { return hourglass_since_; }
+  void restore(std::optional<double> open_since, std::optional<double> hourglass_since) {
+    open_since_ = open_since;
+    hourglass_since_ = hourglass_since;
+  }
   // Empty when all is well. Names the elements whose hourglass modes took most work.
   std::string warning(const Model& model, const EnergyLedger& ledger, std::span<const double> hourglass_work) const;
 

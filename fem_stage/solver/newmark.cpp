@@ -61,7 +61,7 @@ void Newmark::factorise(const ElementForces& forces, double dt) {
         if (equation >= 0) system_.add_diagonal(equation, c1 * dashpot.coefficient);
       }
     };
-    if (scale_ == 0.0) {  // balance the two blocks of the diagonal once
+    if (memory_.scale == 0.0) {  // balance the two blocks of the diagonal once
       assemble(1.0);
       const auto diagonal = system_.diagonal();
       double displacement = 0.0, pressure = 0.0;
@@ -73,12 +73,12 @@ void Newmark::factorise(const ElementForces& forces, double dt) {
         pressures += n % 3 == freedom_p;
       }
       const int displacements = static_cast<int>(diagonal.size()) - pressures;
-      scale_ = pressures > 0 && pressure > 0.0 && displacements > 0
-                   ? std::sqrt(displacement / displacements / (pressure / pressures))
-                   : 1.0;
-      scale_ = std::exp2(std::round(std::log2(scale_)));
+      memory_.scale = pressures > 0 && pressure > 0.0 && displacements > 0
+                          ? std::sqrt(displacement / displacements / (pressure / pressures))
+                          : 1.0;
+      memory_.scale = std::exp2(std::round(std::log2(memory_.scale)));
     }
-    assemble(scale_);
+    assemble(memory_.scale);
   }
   {
     const Timer timer(counts_.factorisation_seconds);
@@ -91,7 +91,8 @@ void Newmark::factorise(const ElementForces& forces, double dt) {
           equations_.describe(error.equation, model_.mesh)));
     }
   }
-  matrix_step_ = dt;
+  memory_.step = dt;
+  memory_.basis = forces.matrix_basis();
   ++counts_.factorisations;
   std::vector<double> weights = system_.diagonal();
   for (double& w : weights) w = std::abs(w);
@@ -107,12 +108,23 @@ std::string Newmark::worst_freedom(std::span<const double> residual) const {
                      equations_.describe(static_cast<int>(worst), model_.mesh));
 }
 
+void Newmark::restore(const MatrixMemory& memory, const SolverCounts& counts, ElementForces& forces) {
+  memory_ = memory;
+  if (memory.step > 0.0) {
+    const MatrixBasis now = forces.matrix_basis();
+    forces.use_matrix_basis(memory.basis);
+    factorise(forces, memory.step);
+    forces.use_matrix_basis(now);
+  }
+  counts_ = counts;
+}
+
 StepResult Newmark::step(State& state, MaterialPoints& points, ElementForces& forces, double dt) {
   const std::size_t nodes = model_.nodes();
   const double gamma = options_.gamma, beta = options_.beta, theta = options_.theta, c1 = gamma / (beta * dt);
   StepResult result;
   bool fresh = false;
-  if (std::abs(matrix_step_ - dt) > 1e-9 * dt || last_iterations_ > options_.refactor_above) {
+  if (std::abs(memory_.step - dt) > 1e-9 * dt || memory_.last_iterations > options_.refactor_above) {
     factorise(forces, dt);
     fresh = true;
   }
@@ -176,7 +188,7 @@ StepResult Newmark::step(State& state, MaterialPoints& points, ElementForces& fo
       }
       const int equation = equations_.number[3 * n + freedom_p];
       if (equation >= 0)
-        right_[static_cast<std::size_t>(equation)] += scale_ / c1 * element_residual_[3 * n + freedom_p];
+        right_[static_cast<std::size_t>(equation)] += memory_.scale / c1 * element_residual_[3 * n + freedom_p];
     }
     for (const auto& dashpot : dashpots_) {
       const std::size_t n = static_cast<std::size_t>(dashpot.node);
@@ -221,12 +233,12 @@ StepResult Newmark::step(State& state, MaterialPoints& points, ElementForces& fo
         if (equation >= 0) increment_[2 * n + i] += right_[static_cast<std::size_t>(equation)];
       }
       const int equation = equations_.number[3 * n + freedom_p];
-      if (equation >= 0) pressure_[n] += scale_ * right_[static_cast<std::size_t>(equation)];
+      if (equation >= 0) pressure_[n] += memory_.scale * right_[static_cast<std::size_t>(equation)];
     }
   }
-  last_iterations_ = fresh ? 0 : result.iterations;
+  memory_.last_iterations = fresh ? 0 : result.iterations;
   if (!result.converged) {
-    matrix_step_ = 0.0;
+    memory_.step = 0.0;
     return result;
   }
   ++counts_.steps;

@@ -45,6 +45,14 @@ struct SolverCounts {
   double assembly_seconds = 0.0, factorisation_seconds = 0.0, solve_seconds = 0.0, element_seconds = 0.0;
 };
 
+// The matrix in use, by what it was made of.
+struct MatrixMemory {
+  double step = 0.0;   // s, dt of the matrix; 0 = none
+  double scale = 0.0;  // Pa/m: unit of the pressure unknown; 0 until the first matrix
+  int last_iterations = 0;
+  MatrixBasis basis;
+};
+
 class Newmark {
  public:
   Newmark(const Model& model, const Freedoms& freedoms, NewmarkOptions options, std::vector<Dashpot> dashpots,
@@ -57,7 +65,10 @@ class Newmark {
   const SolverCounts& counts() const { return counts_; }
   SolverCounts& counts() { return counts_; }
   const Freedoms::Equations& equations() const { return equations_; }
-  void forget_matrix() { matrix_step_ = 0.0; }
+  void forget_matrix() { memory_.step = 0.0; }
+  // What a run that goes on needs to have the same matrix again. `forces` come back as they are.
+  const MatrixMemory& memory() const { return memory_; }
+  void restore(const MatrixMemory& memory, const SolverCounts& counts, ElementForces& forces);
   // External force (N, (N, 2)) and element residual (N, 3) of the last accepted step, for the ledger.
   std::span<const double> last_load() const { return load_force_; }
   std::span<const double> last_increment() const { return increment_; }
@@ -76,9 +87,7 @@ class Newmark {
   SymmetricSystem system_;
   std::vector<double> thickness_;  // m, per equation: what residuals count over
   std::unique_ptr<Anderson> anderson_;
-  double matrix_step_ = 0.0;  // dt of the factorised matrix, 0 = none
-  double scale_ = 0.0;        // Pa/m: unit of the pressure unknown
-  int last_iterations_ = 0;
+  MatrixMemory memory_;
   double last_step_ = 0.0;
   SolverCounts counts_;
   std::vector<double> inertia_difference_;  // N, (N, 2), only with averaged mass

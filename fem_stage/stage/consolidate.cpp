@@ -9,6 +9,7 @@
 #include <set>
 
 #include "common/progress.hpp"
+#include "common/vtkhdf.hpp"
 #include "common/warnings.hpp"
 #include "fem_stage/model/stage_freedoms.hpp"
 #include "fem_stage/output/history.hpp"
@@ -76,6 +77,8 @@ ConsolidationReport run_consolidation(const Model& model, MaterialPoints& points
   const auto save = [&](const std::string& name) {
     write_state(folder / name, model, state, points, 0.0, 0.0, state.rigid_displacement);
     report.snapshots.push_back(name);
+    report.snapshot_times.push_back(state.time);
+    write_file_series(folder / "snapshots.vtkhdf.series", report.snapshots, report.snapshot_times);
   };
   const auto record = [&] {
     history.record(state, {0.0, 0.0, state.rigid_displacement});

@@ -20,6 +20,7 @@ struct ConsolidationReport {
   double start_velocity = 0.0;  // m/s, largest of the given state, which is taken as zero
   SolverCounts counts;
   std::vector<std::string> snapshots;  // file names
+  std::vector<double> snapshot_times;  // s
   std::string failure;                 // empty when the end was reached
 };
 

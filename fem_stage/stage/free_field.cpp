@@ -126,4 +126,23 @@ void FreeField::add_forces(double time, std::span<double> force) const {
   }
 }
 
+std::vector<double> FreeField::memory() const {
+  std::vector<double> values = {time_};
+  values.insert(values.end(), velocity_.begin(), velocity_.end());
+  values.insert(values.end(), acceleration_.begin(), acceleration_.end());
+  for (const Face& face : faces_) values.insert(values.end(), {face.xx, face.xy, face.xx_rate, face.xy_rate});
+  return values;
+}
+
+void FreeField::restore(std::span<const double> memory) {
+  if (memory.size() != this->memory().size())
+    throw InputError("the checkpoint's free field is that of other sides (/boundaries/free_field)");
+  const double* from = memory.data();
+  time_ = *from++;
+  for (auto* values : {&velocity_, &acceleration_})
+    for (double& value : *values) value = *from++;
+  for (Face& face : faces_)
+    for (double* value : {&face.xx, &face.xy, &face.xx_rate, &face.xy_rate}) *value = *from++;
+}
+
 }  // namespace tailrun::fem

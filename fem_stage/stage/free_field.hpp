@@ -27,6 +27,9 @@ class FreeField {
   const std::vector<Dashpot>& dashpots() const { return dashpots_; }  // their own part: -rho V A v
   void observe(const State& state);                                   // after every accepted step
   void add_forces(double time, std::span<double> force) const;        // N, (N, 2): the column's part, at `time` (s)
+  // What observe() has kept of the last steps, for a run that goes on. Throws InputError when its length is another's.
+  std::vector<double> memory() const;
+  void restore(std::span<const double> memory);
 
  private:
   struct Link {

@@ -9,6 +9,7 @@
 
 #include "common/error.hpp"
 #include "common/progress.hpp"
+#include "common/vtkhdf.hpp"
 #include "common/warnings.hpp"
 #include "fem_stage/model/stage_freedoms.hpp"
 #include "fem_stage/output/snapshot_plan.hpp"
@@ -16,6 +17,7 @@
 #include "fem_stage/solver/energy_watch.hpp"
 #include "fem_stage/stage/free_field.hpp"
 #include "fem_stage/stage/liquefaction.hpp"
+#include "fem_stage/stage/shake_checkpoint.hpp"
 
 namespace tailrun::fem {
 namespace {
@@ -79,6 +81,7 @@ class Stepper {
     return {};
   }
   void start_load(std::vector<double> load) { last_load_ = std::move(load); }
+  const std::vector<double>& last_load() const { return last_load_; }
 
  private:
   const Model& model_;
@@ -90,6 +93,28 @@ class Stepper {
   std::function<void(double)> accepted_;  // what else goes on with the time, from `before` to the state's
   EnergyRecorder recorder_;
   std::vector<double> last_load_;
+};
+
+// When a checkpoint is to be written: every few minutes, and before an interruption ends the run.
+class CheckpointClock {
+ public:
+  explicit CheckpointClock(const ShakeControl& control) : control_(control) {}
+
+  bool is_due(long step) {
+    if (control_.interruption) reason_ = control_.interruption(step);
+    return !reason_.empty() || seconds_since(last_) > 60.0 * control_.checkpoint_interval;
+  }
+  // Throws InterruptedError when that is why it was written.
+  void saved() {
+    if (!reason_.empty())
+      throw InterruptedError(fmt::format("interrupted by {}; to go on: {}", reason_, control_.resume_command));
+    last_ = std::chrono::steady_clock::now();
+  }
+
+ private:
+  const ShakeControl& control_;
+  std::string reason_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace
@@ -127,7 +152,7 @@ void check_shake_output(const FemCase& options, double state_bytes, const std::f
 }
 
 ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, const Motion& motion,
-                      const std::filesystem::path& folder) {
+                      const std::filesystem::path& folder, const ShakeControl& control) {
   const auto start = std::chrono::steady_clock::now();
   const ShakeOptions& options = model.options->shake;
   const OutputOptions& output = model.options->output;
@@ -138,7 +163,16 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
   // 1. Freedoms, dashpots and loads of this stage.
   const Freedoms freedoms = shaking_freedoms(model);
   const auto base_only = base_dashpots(model);
-  FreeField free_field(model, points, state);
+  FreeField free_field(model, points, state);  // of the soil at the start, also for a run that goes on
+  const std::filesystem::path checkpoint = folder / shake_checkpoint_name;
+  std::optional<ShakeProgress> before;
+  if (control.resume) {
+    before = read_shake_checkpoint(checkpoint, model, state, points);
+    free_field.restore(before->free_field);
+    spdlog::info("going on from {}: t = {:.6g} s, step {}", checkpoint.string(), state.time, before->counts.steps);
+  } else {
+    std::filesystem::remove(checkpoint);
+  }
   auto dashpots = base_only;
   dashpots.insert(dashpots.end(), free_field.dashpots().begin(), free_field.dashpots().end());
   const auto load = [&](double time, std::span<double> force) {
@@ -169,7 +203,7 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
   };
   observe_soil();
   forces.reset(points, state);
-  for (std::size_t i = 0; i < 2 * model.nodes(); ++i)  // what a restart brings along
+  for (std::size_t i = 0; !before && i < 2 * model.nodes(); ++i)  // what a restart brings along
     report.ledger.external_work += 0.5 * model.nodal_mass[i / 2] * state.velocity[i] * state.velocity[i];
   NewmarkOptions newmark_options{options.gamma,
                                  options.beta,
@@ -188,9 +222,11 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
   Stepper stepper(model, points, state, forces, newmark, report.ledger, accepted);
   std::vector<double> first_load(2 * model.nodes(), 0.0);
   load(state.time, first_load);
-  stepper.start_load(std::move(first_load));
+  stepper.start_load(before ? before->last_load : std::move(first_load));
 
   // 3. Steps, with output on the way.
+  const double wall_before = before ? before->wall_seconds : 0.0,
+               material_before = before ? before->material_seconds : 0.0;
   History history(model, folder);
   QualitySeries quality(model, folder);
   EnergyWatch energy;
@@ -203,12 +239,18 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
   const double history_interval = std::max(output.history_interval, 1e-3 * options.time_step),
                snapshot_interval =
                    output.snapshot_interval > 0.0 ? std::max(output.snapshot_interval, 1e-3 * options.time_step) : 0.0;
+  const auto keep_state = [&](const std::string& name, const BaseMotion& base) {
+    write_state(folder / name, model, state, points, base.velocity, base.acceleration, base.displacement);
+    report.snapshots.push_back(name);
+    report.snapshot_times.push_back(state.time);
+    write_file_series(folder / "snapshots.vtkhdf.series", report.snapshots, report.snapshot_times);
+  };
   const auto write_outputs = [&] {
     const auto output_start = std::chrono::steady_clock::now();
     const BaseMotion base = rigid_base_motion(model, motion, state.time, state.rigid_displacement);
     if (state.time >= next_record - slack) {
       history.record(state, base);
-      quality.record(state, newmark.counts(), seconds_since(start));
+      quality.record(state, newmark.counts(), wall_before + seconds_since(start));
       while (next_record <= state.time + slack) next_record += history_interval;
     }
     bool wanted = false;
@@ -222,18 +264,54 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
     }
     if (wanted) {
       const std::string name = plan.name(state.time);
-      write_state(folder / name, model, state, points, base.velocity, base.acceleration, base.displacement);
-      report.snapshots.push_back(name);
+      keep_state(name, base);
     }
     report.output_seconds += seconds_since(output_start);
   };
-  if (state.time > 0.0) {  // a restart: what lies before it has been written
+  const auto save = [&] {
+    ShakeProgress now;
+    now.ledger = report.ledger;
+    now.counts = newmark.counts();
+    now.matrix = newmark.memory();
+    now.energy_open_since = energy.open_since();
+    now.hourglass_since = energy.hourglass_since();
+    now.hourglass_work.assign(forces.hourglass_work().begin(), forces.hourglass_work().end());
+    now.last_load = stepper.last_load();
+    now.free_field = free_field.memory();
+    now.quality = quality.rows();
+    now.history_lines = history.lines();
+    now.quality_lines = quality.lines();
+    now.snapshots = report.snapshots;
+    now.snapshot_times = report.snapshot_times;
+    now.next_record = next_record;
+    now.next_regular = next_regular;
+    now.next_snapshot = next_snapshot;
+    now.wall_seconds = wall_before + seconds_since(start);
+    now.output_seconds = report.output_seconds;
+    now.material_seconds = material_before + forces.material_seconds();
+    write_shake_checkpoint(checkpoint, model, state, points, now);
+  };
+  if (before) {
+    report.ledger = before->ledger;
+    newmark.restore(before->matrix, before->counts, forces);
+    energy.restore(before->energy_open_since, before->hourglass_since);
+    forces.restore_hourglass_work(before->hourglass_work);
+    history.restore(before->history_lines);
+    quality.restore(before->quality, before->quality_lines);
+    report.snapshots = before->snapshots;
+    report.snapshot_times = before->snapshot_times;
+    report.output_seconds = before->output_seconds;
+    next_record = before->next_record;
+    next_regular = before->next_regular;
+    next_snapshot = before->next_snapshot;
+  } else if (state.time > 0.0) {  // a restart: what lies before it has been written
     while (next_snapshot < output.snapshots.size() && output.snapshots[next_snapshot] <= state.time + slack)
       ++next_snapshot;
     while (snapshot_interval > 0.0 && next_regular <= state.time + slack) next_regular += snapshot_interval;
     next_record = state.time;
   }
-  write_outputs();
+  if (!before) write_outputs();
+  CheckpointClock clock(control);
   const long total_steps = std::lround(std::ceil(options.duration / options.time_step - 1e-9));
   for (long step = 1; step <= total_steps && report.failure.empty(); ++step) {
     const double before = state.time,
@@ -251,6 +329,9 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
     if (!quality.rows().empty())
       progress.update(state.time, step,
                       fmt::format("max displacement {:.2f} m", quality.rows().back().largest_displacement));
+    if (state.time >= options.duration || !clock.is_due(step)) continue;
+    save();
+    clock.saved();
   }
   progress.finish(report.failure.empty() ? "" : "stopped");
 
@@ -258,8 +339,7 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
   if (!report.failure.empty()) {
     const BaseMotion base = rigid_base_motion(model, motion, state.time, state.rigid_displacement);
     const std::string name = fmt::format("last_good_t{:07.4f}.h5", state.time);
-    write_state(folder / name, model, state, points, base.velocity, base.acceleration, base.displacement);
-    report.snapshots.push_back(name);
+    keep_state(name, base);
   }
   history.finish();
   quality.finish();
@@ -271,8 +351,9 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
   report.quality = quality.rows();
   report.window = find_transfer_window(report.quality, motion.significant_duration(0.05, 0.95).second);
   if (forces.residual_floor()) report.liquefaction = liquefaction_summary(model, *forces.residual_floor());
-  report.material_seconds = forces.material_seconds();
-  report.wall_seconds = seconds_since(start);
+  report.material_seconds = material_before + forces.material_seconds();
+  report.wall_seconds = wall_before + seconds_since(start);
+  if (report.failure.empty()) std::filesystem::remove(checkpoint);
   return report;
 }
 

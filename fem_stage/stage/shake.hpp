@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -23,7 +24,17 @@ struct ShakeReport {
   TransferWindow window;
   nlohmann::ordered_json liquefaction;  // liquefaction_summary(); null without residual strengths
   std::vector<std::string> snapshots;   // file names
+  std::vector<double> snapshot_times;   // s
   std::string failure;                  // empty when the run reached its end
+};
+
+// What may interrupt a shake, and how it goes on.
+struct ShakeControl {
+  bool resume = false;  // from the folder's checkpoint
+  // Called after each step with its number: why the run is to stop, else empty.
+  std::function<std::string(long)> interruption;
+  std::string resume_command;        // for the message
+  double checkpoint_interval = 5.0;  // minutes of wall time
 };
 
 // The motion as the case wants it: read, scaled; one without values when the case has none. Throws InputError.
@@ -34,8 +45,9 @@ Motion case_motion(const FemCase& options);
 void check_shake_output(const FemCase& options, double state_bytes, const std::filesystem::path& folder);
 
 // Writes snapshot_t*.h5, history.csv and quality.csv into `folder`. On failure of the computation the last good state
-// is written as last_good_t*.h5 and `failure` says why.
+// is written as last_good_t*.h5 and `failure` says why. Throws InterruptedError, with a checkpoint written, when
+// `control` asks for it.
 ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, const Motion& motion,
-                      const std::filesystem::path& folder);
+                      const std::filesystem::path& folder, const ShakeControl& control = {});
 
 }  // namespace tailrun::fem

@@ -89,7 +89,8 @@ template <class OfSurface, class Real>
   const auto lower = p2 - p3 < p1 - p2;
   const Real along1 = lower ? ta : tb, along2 = lower ? e.k * ta : tb;
   const Real q1 = apex + along1, q2 = apex + along2, q3 = apex + e.k * along1;
-  const auto ordered = (p1 >= p2) & (p2 >= p3), yields = f > zero;
+  const auto ordered = (p1 >= p2) & (p2 >= p3);
+  const auto yields = f > zero;
   const Real r1 = ordered ? p1 : q1, r2 = ordered ? p2 : q2, r3 = ordered ? p3 : q3;
   return {yields ? r1 : t.s1, yields ? r2 : t.s2, yields ? r3 : t.s3};
 }

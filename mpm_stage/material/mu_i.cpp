@@ -137,7 +137,8 @@ class MuI {
       const Real next = flat ? (a * fc - c * fa) / (flat ? width : one) : c;
       const Real f = excess(next), moved = magnitude_of(next - mu);
       mu = next;
-      const auto above = f > zero, a_again = above & (kept > zero), c_again = (f <= zero) & (kept < zero);
+      const auto above = f > zero;
+      const auto a_again = above & (kept > zero), c_again = (f <= zero) & (kept < zero);
       const Real halve_a = a_again ? 0.5 * one : one, halve_c = c_again ? 0.5 * one : one;
       c = above ? next : c;
       fc = above ? f : fc * halve_c;

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "common/application.hpp"
 #include "common/error.hpp"
 #include "common/output_place.hpp"
+#include "common/vtkhdf.hpp"
 
 namespace tailrun::mpm {
 
@@ -120,11 +119,7 @@ void FrameWriter::write(ParticleSet set) {
 }
 
 void FrameWriter::write_index() const {
-  nlohmann::ordered_json index;
-  index["file-series-version"] = "1.0";
-  index["files"] = nlohmann::ordered_json::array();
-  for (std::size_t k = 0; k < names_.size(); ++k) index["files"].push_back({{"name", names_[k]}, {"time", times_[k]}});
-  write_text_file((folder_ / "runout.vtkhdf.series").string(), index.dump(1) + "\n");
+  write_file_series(folder_ / "runout.vtkhdf.series", names_, times_);
 }
 
 }  // namespace tailrun::mpm

@@ -125,12 +125,17 @@ class Runout {
       motion = fmt::format(", soil still in motion (root mean square {:.2g} m/s{})", f.rms_speed,
                            std::isfinite(front) ? fmt::format(", the flow's front {:.2g} m/s", front) : "");
     }
-    const double turnover = std::max(ledger_.turnover(), 1e-300);
-    fmt::print(
-        "{}: {} after {:.3f} s{}, {} steps; {}; of {:.4g} J turned over the scheme lost "
-        "{:.1f} %, residual {:.2f} %\n",
-        scene_.title, record_.stop_reason, record_.time, motion, record_.steps, flow, ledger_.turnover(),
-        100.0 * ledger_.rows().back().lost / turnover, 100.0 * ledger_.rows().back().residual / turnover);
+    // Where next to nothing flows, shares of the little that settling turns over say nothing.
+    constexpr double next_to_nothing = 0.01;  // of the mass
+    const bool flows = f.flowed_mass > next_to_nothing * ledger_.rows().back().mass;
+    const double turnover = std::max(ledger_.turnover(), 1e-300), lost = ledger_.rows().back().lost;
+    const std::string energy =
+        flows ? fmt::format("of {:.4g} J turned over the scheme lost {:.1f} %, residual {:.2f} %", ledger_.turnover(),
+                            100.0 * lost / turnover, 100.0 * ledger_.rows().back().residual / turnover)
+              : fmt::format("{:.4g} J turned over, {:.4g} J of it lost by the scheme", ledger_.turnover(), lost);
+    if (!quiet())
+      fmt::print("{}: {} after {:.3f} s{}, {} steps; {}; {}\n", scene_.title, record_.stop_reason, record_.time, motion,
+                 record_.steps, flow, energy);
   }
 
  private:

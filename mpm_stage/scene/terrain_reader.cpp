@@ -6,6 +6,7 @@
 
 #include "common/error.hpp"
 #include "common/warnings.hpp"
+#include "mpm_stage/scene/line_crossing.hpp"
 #include "mpm_stage/scene/scene.hpp"
 
 namespace tailrun::mpm {
@@ -64,6 +65,13 @@ std::vector<TerrainInput> read_terrain(const CaseNode& root, const ParticleSet& 
     for (std::size_t i = 1; i < line.points.size(); ++i)
       if (line.points[i] == line.points[i - 1])
         node.fail("points", fmt::format("points {} and {} are the same", i - 1, i));
+    if (const auto crossing = first_crossing(line.points))
+      node.fail(
+          node.has("points") ? "points" : "from_particles",
+          fmt::format("the line crosses or touches itself at ({:.6g}, {:.6g}) m: segment {} (points {} and {}) and "
+                      "segment {} (points {} and {}); material lies on the left of a line, which is then not told",
+                      crossing->place[0], crossing->place[1], crossing->first, crossing->first, crossing->first + 1,
+                      crossing->second, crossing->second, crossing->second + 1));
     line.friction = segment_friction(node, line);
     line.adhere = node.boolean_or("adhere", false);
     lines.push_back(std::move(line));

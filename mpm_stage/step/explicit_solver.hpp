@@ -176,6 +176,7 @@ class ExplicitSolver final : public Solver<Dim> {
   static constexpr std::size_t few_particles = 128;
   // In 2-D a node's four lanes have room for the velocity's change over the step beside the velocity.
   static constexpr bool separate_change = Split && Dim == 3;
+  static constexpr int change_at = separate_change ? 0 : 2;  // lane of the change's first component
 
   struct BlockMotion {
     double far = 0.0, wave = 0.0, fast = 0.0, kinetic = 0.0;
@@ -260,11 +261,13 @@ class ExplicitSolver final : public Solver<Dim> {
   void set_velocity(std::size_t node, const std::array<double, Dim>& v, const std::array<double, Dim>& before) {
     velocity_[node] = node_velocity<Dim>(v.data());
     if constexpr (Split) {
-      for (int d = 0; d < Dim; ++d) (separate_change ? change_[node][d] : velocity_[node][2 + d]) = v[d] - before[d];
+      Vec4& change = separate_change ? change_[node] : velocity_[node];
+      for (int d = 0; d < Dim; ++d) change[change_at + d] = v[d] - before[d];
     }
   }
   void add_change(std::size_t node, const std::array<double, Dim>& dv) {
-    for (int d = 0; d < Dim; ++d) (separate_change ? change_[node][d] : velocity_[node][2 + d]) += dv[d];
+    Vec4& change = separate_change ? change_[node] : velocity_[node];
+    for (int d = 0; d < Dim; ++d) change[change_at + d] += dv[d];
   }
   // m/s, of the node's velocity over this step, with the changes added so far.
   double change_of(std::size_t node, int d) const {

@@ -1,5 +1,6 @@
 """Programs killed at random moments: what is under a final name is whole, the folder is free at once, the next run gives
-the undisturbed one's results, and a runout that goes on from its checkpoint the same bits.
+the undisturbed one's results, and a shake or
+runout that goes on from its checkpoint the same bits.
 
 Usage: killed.py FEM_STAGE TRANSFER_TOOL MPM_STAGE CASES [ROUNDS]
 """
@@ -30,7 +31,7 @@ with tempfile.TemporaryDirectory() as name:
             said = process.communicate(timeout=120)[1]
             kills += 1
             chain.results(tried)  # raises where something is not whole
-            if stage == "mpm" and (tried / "mpm/checkpoint.h5").exists():
+            if (tried / {"mpm": "mpm/checkpoint.h5", "shake": "fem/shake_checkpoint.h5"}.get(stage, "none")).exists():
                 again = chain.run(stage, tried, "--resume")
                 resumed += 1
             else:
@@ -41,4 +42,4 @@ with tempfile.TemporaryDirectory() as name:
         assert found.keys() == wanted.keys(), f"other files: {sorted(found.keys() ^ wanted.keys())}"
         for file in wanted:
             assert found[file] == wanted[file], f"{file} is another after the kills"
-print(f"{kills} kills in {rounds} chains, {resumed} runouts resumed: nothing cut under a final name, same results")
+print(f"{kills} kills in {rounds} chains, {resumed} shakes and runouts resumed: nothing cut under a final name, same results")

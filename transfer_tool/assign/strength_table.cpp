@@ -42,7 +42,9 @@ std::optional<StrengthLaw> other_law(const CaseFile& file, const StrengthLaw& ch
 void add_curves_of_rule(const CaseFile& file, const std::vector<double>& percentiles, StrengthCurve chosen,
                         std::vector<StrengthCurve>& curves) {
   const Json& data = chosen.law.record;
-  for (const auto& [model, inputs] : comparable_models()) {
+  for (const auto& candidate : comparable_models()) {
+    const std::string& model = candidate.first;
+    const std::vector<std::string>& inputs = candidate.second;
     const bool known = std::any_of(inputs.begin(), inputs.end(), [&](const auto& key) { return data.contains(key); });
     if (!known) continue;
     const auto add = [&](const std::string& relation, std::optional<double> percentile,

@@ -66,12 +66,13 @@ std::vector<bool> kept_elements(const Snapshot& snapshot, const SamplingOptions&
   return kept;
 }
 
-std::array<int, 2> automatic_points(const Corners& deformed, const SamplingOptions& options) {
+std::array<double, 2> points_in_element(const Corners& deformed, const SamplingOptions& options, std::size_t region) {
+  if (const double wanted = options.points[region]; wanted > 0.0) return {wanted, wanted};
   const double spacing = options.cell_size / std::sqrt(options.points_per_cell);
-  const auto count = [&](double length) { return std::max(1, static_cast<int>(std::lround(length / spacing))); };
-  std::array<int, 2> n = {count(mid_line(deformed, 1, 2, 0, 3)), count(mid_line(deformed, 2, 3, 0, 1))};
-  if (options.layout == Layout::gauss)
-    for (int& along : n) along = std::min(along, 5);
+  const auto count = [&](double length) { return std::max(1.0, std::round(length / spacing)); };
+  std::array<double, 2> n = {count(mid_line(deformed, 1, 2, 0, 3)), count(mid_line(deformed, 2, 3, 0, 1))};
+  // A Gauss rule with different counts along xi and eta needs two rules; the larger count serves both directions.
+  if (options.layout == Layout::gauss) n[0] = n[1] = std::min(5.0, std::max(n[0], n[1]));
   return n;
 }
 
@@ -81,14 +82,13 @@ SamplePoints sample(const Snapshot& snapshot, const std::vector<bool>& kept, con
   for (std::size_t e = 0; e < snapshot.elements(); ++e) {
     if (!kept[e]) continue;
     const Corners initial = initial_corners(snapshot, e), deformed = deformed_corners(snapshot, e);
-    const int wanted = options.points[static_cast<std::size_t>(snapshot.region_id[e])];
-    std::array<int, 2> n = wanted > 0 ? std::array<int, 2>{wanted, wanted} : automatic_points(deformed, options);
-    // A Gauss rule with different counts along xi and eta needs two rules; the larger count serves both directions.
+    const auto region = static_cast<std::size_t>(snapshot.region_id[e]);
+    const auto asked = points_in_element(deformed, options, region);
+    const std::array<int, 2> n = {static_cast<int>(asked[0]), static_cast<int>(asked[1])};
     const bool is_gauss = options.layout == Layout::gauss && std::max(n[0], n[1]) > 1;
-    if (is_gauss) {
-      n[0] = n[1] = std::max(n[0], n[1]);
+    if (is_gauss && options.points[region] == 0) {
       const double longest = std::max(mid_line(deformed, 1, 2, 0, 3), mid_line(deformed, 2, 3, 0, 1));
-      if (wanted == 0 && longest / spacing > 5.5) ++points.capped_elements;
+      if (longest / spacing > 5.5) ++points.capped_elements;
     }
     points.largest_count = std::max<long>(points.largest_count, std::max(n[0], n[1]));
 

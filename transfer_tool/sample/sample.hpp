@@ -53,9 +53,10 @@ struct SamplePoints {
 // Which elements become particles.
 std::vector<bool> kept_elements(const Snapshot& snapshot, const SamplingOptions& options);
 
-// Points along xi and eta for an element of that size: mid-line length x sqrt(points per cell)/cell size, rounded, at
-// least 1. Gauss: at most 5.
-std::array<int, 2> automatic_points(const Corners& deformed, const SamplingOptions& options);
+// Points along xi and eta of an element: as many as its region has, or else mid-line length x sqrt(points per
+// cell)/cell size, rounded, at least 1; Gauss: at most 5, and along both the larger. Beyond any integer for small
+// cells: check_request (request_checks.hpp) comes before sample().
+std::array<double, 2> points_in_element(const Corners& deformed, const SamplingOptions& options, std::size_t region);
 
 // Throws InputError for an element that is folded before the deformation, or (unless `inverted` is initial_volume)
 // at the snapshot's time.

@@ -184,3 +184,20 @@ TEST_CASE("a phreatic line above the ground is warned of, with the depth, unless
   CHECK(told(4.05, false) == "");
   CHECK(told(2.0, false) == "");
 }
+
+TEST_CASE("rows and snapshots that are asked for far more often than there are steps are warned of, defaults are not") {
+  const auto warned = [](const std::string& shake, const std::string& output) {
+    forget_warnings();
+    read_fem_case(case_file(shake, fmt::format(R"("output": {{ {} }},)", output)), "");
+    std::string all;
+    for (const auto& text : warnings()) all += text;
+    return all;
+  };
+  const std::string coarse = R"("duration": 2, "time_step": 0.5)", fine = R"("duration": 2, "time_step": 0.005)";
+  CHECK(warned(coarse, R"("history_interval": 1e-9)")
+            .find("/output/history_interval: 1e-09 s is far below the time step "
+                  "of 0.5 s; there is a row at every step") != std::string::npos);
+  CHECK(warned(coarse, R"("snapshot_interval": 0.01)").find("a snapshot at every step") != std::string::npos);
+  CHECK(warned(coarse, "").find("far below") == std::string::npos);
+  CHECK(warned(fine, R"("history_interval": 0.005, "snapshot_interval": 0.5)").find("far below") == std::string::npos);
+}

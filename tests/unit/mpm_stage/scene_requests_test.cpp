@@ -16,7 +16,8 @@ using namespace tailrun::mpm;
 namespace {
 
 struct Asked {
-  std::string cell = "0.5", end = "1", time = {}, high = "[2, 2]", modulus = "1e6", output = {}, friction = "0.5";
+  std::string cell = "0.5", end = "1", time = {}, high = "[2, 2]", modulus = "1e6", output = {}, friction = "0.5",
+              ground = "[-50, 0], [50, 0]";
 };
 
 // The refusal, "" when the scene is read.
@@ -26,8 +27,8 @@ std::string refusal(const Asked& a) {
       R"({{ "grid": {{ "cell_size": {} }}, "time": {{ "end": {}{} }},
       "materials": {{ "soil": {{ "model": "linear_elastic", "youngs_modulus": {}, "poisson_ratio": 0.3 }} }},
       "particles": [{{ "shape": "box", "low": [0, 0], "high": {}, "material": "soil" }}],
-      "terrain": [{{ "points": [[-50, 0], [50, 0]], "friction": {} }}], "output": {{ {} }} }})",
-      a.cell, a.end, a.time, a.modulus, a.high, a.friction, a.output);
+      "terrain": [{{ "points": [{}], "friction": {} }}], "output": {{ {} }} }})",
+      a.cell, a.end, a.time, a.modulus, a.high, a.ground, a.friction, a.output);
   try {
     const CaseFile file(path);
     read_scene(file, {});
@@ -83,4 +84,9 @@ TEST_CASE("a friction in degrees is warned of with its tangent") {
     for (const auto& text : warnings()) found = found || text.find("it would be 0.7") != std::string::npos;
     CHECK(found == warned);
   }
+}
+
+TEST_CASE("ground that crosses itself is refused with the place") {
+  check({.ground = "[-50, 0], [50, 0], [50, 5], [44, -5]"},
+        "/terrain/0/points: the line crosses or touches itself at (47, 0) m: segment 0 (points 0 and 1) and segment 2");
 }

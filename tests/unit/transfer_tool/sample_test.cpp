@@ -52,11 +52,11 @@ TEST_CASE("automatic counts follow the cell size, along each side of its own") {
   options.cell_size = 1.0;
   options.points_per_cell = 4.0;
   const Corners slab = {{{0, 0}, {10, 0}, {10, 1}, {0, 1}}};
-  CHECK(automatic_points(slab, options) == std::array<int, 2>{20, 2});
+  CHECK(points_in_element(slab, options, 0) == std::array<double, 2>{20, 2});
   options.layout = Layout::gauss;
-  CHECK(automatic_points(slab, options) == std::array<int, 2>{5, 2});
+  CHECK(points_in_element(slab, options, 0) == std::array<double, 2>{5, 5});
   options.cell_size = 100.0;
-  CHECK(automatic_points(slab, options) == std::array<int, 2>{1, 1});
+  CHECK(points_in_element(slab, options, 0) == std::array<double, 2>{1, 1});
 }
 
 TEST_CASE("kept elements: regions and the clip by element centres") {

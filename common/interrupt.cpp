@@ -1,8 +1,8 @@
-#include "mpm_stage/run/interrupt.hpp"
+#include "common/interrupt.hpp"
 
 #include <csignal>
 
-namespace tailrun::mpm {
+namespace tailrun {
 
 namespace {
 
@@ -28,4 +28,4 @@ std::string noted_signal() {
   return noted == SIGINT ? "SIGINT" : noted == SIGTERM ? "SIGTERM" : "";
 }
 
-}  // namespace tailrun::mpm
+}  // namespace tailrun

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace tailrun::mpm {
+namespace tailrun {
 
 // From now on the first SIGINT or SIGTERM is only noted down; a second one ends the program at once.
 void note_signals();
@@ -11,4 +11,4 @@ void note_signals();
 // "SIGINT" or "SIGTERM" once it has come, else empty.
 std::string noted_signal();
 
-}  // namespace tailrun::mpm
+}  // namespace tailrun

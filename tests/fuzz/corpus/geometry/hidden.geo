@@ -1,0 +1,2 @@
+a = "x\"; SystemCall "touch y"; //";
+SystemCall("id");

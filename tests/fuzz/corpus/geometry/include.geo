@@ -1,0 +1,2 @@
+Include "mesh.geo";
+Merge "motion.csv";
