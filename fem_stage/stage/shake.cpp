@@ -165,11 +165,11 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
   const auto base_only = base_dashpots(model);
   FreeField free_field(model, points, state);  // of the soil at the start, also for a run that goes on
   const std::filesystem::path checkpoint = folder / shake_checkpoint_name;
-  std::optional<ShakeProgress> before;
+  std::optional<ShakeProgress> resumed;
   if (control.resume) {
-    before = read_shake_checkpoint(checkpoint, model, state, points);
-    free_field.restore(before->free_field);
-    spdlog::info("going on from {}: t = {:.6g} s, step {}", checkpoint.string(), state.time, before->counts.steps);
+    resumed = read_shake_checkpoint(checkpoint, model, state, points);
+    free_field.restore(resumed->free_field);
+    spdlog::info("going on from {}: t = {:.6g} s, step {}", checkpoint.string(), state.time, resumed->counts.steps);
   } else {
     std::filesystem::remove(checkpoint);
   }
@@ -203,7 +203,7 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
   };
   observe_soil();
   forces.reset(points, state);
-  for (std::size_t i = 0; !before && i < 2 * model.nodes(); ++i)  // what a restart brings along
+  for (std::size_t i = 0; !resumed && i < 2 * model.nodes(); ++i)  // what a restart brings along
     report.ledger.external_work += 0.5 * model.nodal_mass[i / 2] * state.velocity[i] * state.velocity[i];
   NewmarkOptions newmark_options{options.gamma,
                                  options.beta,
@@ -222,11 +222,11 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
   Stepper stepper(model, points, state, forces, newmark, report.ledger, accepted);
   std::vector<double> first_load(2 * model.nodes(), 0.0);
   load(state.time, first_load);
-  stepper.start_load(before ? before->last_load : std::move(first_load));
+  stepper.start_load(resumed ? resumed->last_load : std::move(first_load));
 
   // 3. Steps, with output on the way.
-  const double wall_before = before ? before->wall_seconds : 0.0,
-               material_before = before ? before->material_seconds : 0.0;
+  const double wall_before = resumed ? resumed->wall_seconds : 0.0,
+               material_before = resumed ? resumed->material_seconds : 0.0;
   History history(model, folder);
   QualitySeries quality(model, folder);
   EnergyWatch energy;
@@ -291,26 +291,26 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
     now.material_seconds = material_before + forces.material_seconds();
     write_shake_checkpoint(checkpoint, model, state, points, now);
   };
-  if (before) {
-    report.ledger = before->ledger;
-    newmark.restore(before->matrix, before->counts, forces);
-    energy.restore(before->energy_open_since, before->hourglass_since);
-    forces.restore_hourglass_work(before->hourglass_work);
-    history.restore(before->history_lines);
-    quality.restore(before->quality, before->quality_lines);
-    report.snapshots = before->snapshots;
-    report.snapshot_times = before->snapshot_times;
-    report.output_seconds = before->output_seconds;
-    next_record = before->next_record;
-    next_regular = before->next_regular;
-    next_snapshot = before->next_snapshot;
+  if (resumed) {
+    report.ledger = resumed->ledger;
+    newmark.restore(resumed->matrix, resumed->counts, forces);
+    energy.restore(resumed->energy_open_since, resumed->hourglass_since);
+    forces.restore_hourglass_work(resumed->hourglass_work);
+    history.restore(resumed->history_lines);
+    quality.restore(resumed->quality, resumed->quality_lines);
+    report.snapshots = resumed->snapshots;
+    report.snapshot_times = resumed->snapshot_times;
+    report.output_seconds = resumed->output_seconds;
+    next_record = resumed->next_record;
+    next_regular = resumed->next_regular;
+    next_snapshot = resumed->next_snapshot;
   } else if (state.time > 0.0) {  // a restart: what lies before it has been written
     while (next_snapshot < output.snapshots.size() && output.snapshots[next_snapshot] <= state.time + slack)
       ++next_snapshot;
     while (snapshot_interval > 0.0 && next_regular <= state.time + slack) next_regular += snapshot_interval;
     next_record = state.time;
   }
-  if (!before) write_outputs();
+  if (!resumed) write_outputs();
   CheckpointClock clock(control);
   const long total_steps = std::lround(std::ceil(options.duration / options.time_step - 1e-9));
   for (long step = 1; step <= total_steps && report.failure.empty(); ++step) {
