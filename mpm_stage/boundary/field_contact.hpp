@@ -42,8 +42,8 @@ constexpr double open_gap = 0.15;
 // whose surface is 0.7 cells away lies there.
 constexpr double rim = 0.9;
 
-// Least plainness() of what is no corner and no thin plate; a surface that wobbles by up to 20 deg has 0.98.
-constexpr double plain = 0.9;
+// plainness() of what is no corner and no thin plate is more; a surface that wobbles by up to 20 deg has 0.98.
+constexpr double least_plainness = 0.9;
 
 // The surface of a field at a node and those around it: sums of G and of its size, nearer nodes counting more. A single
 // node's G wobbles with the particles' places, and bodies would slide as over a washboard: a slab of soft clay on a
@@ -130,7 +130,7 @@ class ContactPair {
     // Beside soil that flows, firm layers are often thinner than the nodes around reach, which would tilt them.
     const BodyAtNode<Dim>& shows = of_i ? i : j;
     if (shows.firm)
-      take_normal_of((i.firm && j.firm) || shows.plainness() > plain ? shows.outward : shows.surface,
+      take_normal_of((i.firm && j.firm) || shows.plainness() > least_plainness ? shows.outward : shows.surface,
                      of_i ? 1.0 : -1.0);
     // Inside soil that flows, the node's velocity differs from that of the surface by what the soil strains in between;
     // what is there of the firm body is the rim of its reach, and must not be taken along.
