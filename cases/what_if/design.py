@@ -28,7 +28,7 @@ from case_part import read_case
 from distributions import Distribution, rounded
 from json_keys import DesignError, Keys, near
 from sample import copula, sample
-from steps import PARAMETER, read_reference, read_steps
+from steps import PARAMETER, one_key, read_reference, read_steps
 
 DESIGNS = ("latin_hypercube", "sobol", "saltelli", "grid", "steps")
 MOST_MEMBERS = 1000000
@@ -89,17 +89,9 @@ def at_pointer(content, pointer):
 def file_value(keys, name, word, contents):
     """What the case file says under `fem:/...`, None where it says nothing. A key that is spelt nearly like one that is there is refused; one that
     no program knows is refused by the program, with the nearest that it does know."""
+    stage, pointer = one_key(keys, name, word, contents)
     try:
-        parsed = what_if.parse(f"{word}=0")
-    except what_if.SettingError as error:
-        raise DesignError(f"{keys.at(name)}: {str(error).removeprefix('SET: ').replace(f'{word}=0', word)}") from None
-    if len(parsed) != 1 or any(len(texts) != 1 for texts in parsed.values()):
-        raise DesignError(f"{keys.at(name)}: '{word}' is not one key, like {what_if.EXAMPLE.split('=')[0]}")
-    stage = next(iter(parsed))
-    if stage not in contents:
-        raise DesignError(f"{keys.at(name)}: {word}: the case has no {stage}.json; it has {', '.join(f'{s}.json' for s in contents)}")
-    try:
-        return at_pointer(contents[stage], word.partition(":")[2])
+        return at_pointer(contents[stage], pointer)
     except KeyError as error:
         raise DesignError(f"{keys.at(name)}: {word}: in {stage}.json {error.args[0]}") from None
 

@@ -30,17 +30,17 @@ class Step:
         return {f"{stage}:{text.partition('=')[0]}" for stage, texts in self.settings.items() for text in texts}
 
 
-def one_key(keys, word, contents):
-    """(stage, pointer) of `mpm:/a/b`; what the pointer names is for the program to check."""
+def one_key(keys, name, word, contents):
+    """(stage, pointer) of `mpm:/a/b`, which stands under `name` of the design; what the pointer names is for the program to check."""
     try:
         parsed = what_if.parse(f"{word}=0")
     except what_if.SettingError as error:
-        raise DesignError(f"{keys.at('set')}: {str(error).removeprefix('SET: ').replace(f'{word}=0', word)}") from None
+        raise DesignError(f"{keys.at(name)}: {str(error).removeprefix('SET: ').replace(f'{word}=0', word)}") from None
     if len(parsed) != 1 or any(len(texts) != 1 for texts in parsed.values()):
-        raise DesignError(f"{keys.at('set')}: '{word}' is not one key, like {what_if.EXAMPLE.split('=')[0]}")
+        raise DesignError(f"{keys.at(name)}: '{word}' is not one key, like {what_if.EXAMPLE.split('=')[0]}")
     stage = next(iter(parsed))
     if stage not in contents:
-        raise DesignError(f"{keys.at('set')}: {word}: the case has no {stage}.json; it has {', '.join(f'{s}.json' for s in contents)}")
+        raise DesignError(f"{keys.at(name)}: {word}: the case has no {stage}.json; it has {', '.join(f'{s}.json' for s in contents)}")
     return stage, word.partition(":")[2]
 
 
@@ -57,7 +57,7 @@ def read_steps(keys, contents):
         if name in (step.name for step in found):
             raise DesignError(f"{own.at('name')}: '{name}' is there twice")
         for word, value in changes.items():
-            way = one_key(own, word, contents)
+            way = one_key(own, "set", word, contents)
             # What lies within a value that is now given as a whole has gone with it.
             values = {key: text for key, text in values.items() if not (key[0] == way[0] and f"{key[1]}/".startswith(f"{way[1]}/"))}
             values[way] = json.dumps(value)
