@@ -9,6 +9,7 @@
 #include <set>
 
 #include "common/error.hpp"
+#include "common/machine_memory.hpp"
 #include "common/warnings.hpp"
 #include "fem_stage/mesh/geo_commands.hpp"
 #include "fem_stage/mesh/isolated.hpp"
@@ -282,7 +283,7 @@ Mesh mesh_geometry(const std::filesystem::path& geometry, const GeometryOptions&
   IsolationLimits limits;
   limits.seconds = options.time_limit;
   limits.time_limit_name = "/mesh/time_limit";
-  limits.memory = static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  limits.memory = static_cast<std::size_t>(machine_memory());
   limits.may_start_programs = options.trusted;
   try {
     run_isolated(geometry.string(), limits, [&] {

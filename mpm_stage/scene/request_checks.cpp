@@ -1,13 +1,13 @@
 #include "mpm_stage/scene/request_checks.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "common/error.hpp"
+#include "common/machine_memory.hpp"
 
 namespace tailrun::mpm {
 
@@ -21,10 +21,6 @@ constexpr double quarter_hour = 900.0;          // s
 
 double likely_duration(const Scene& scene) {
   return scene.rest.active ? std::min(scene.end_time, quarter_hour) : scene.end_time;
-}
-
-double memory() {
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
 // m/s, of the fastest material, as the solver has it at the start.
@@ -73,11 +69,11 @@ void check_count(const CaseNode& root, const char* key, double interval, double 
 void check_particle_count(const CaseNode& node, const std::array<double, 3>& along, int dimension) {
   double count = 1.0;
   for (int d = 0; d < dimension; ++d) count *= std::max(1.0, along[d]);
-  const double most = std::min(1e9, memory() / bytes_per_particle);
+  const double most = std::min(1e9, machine_memory() / bytes_per_particle);
   if (!(count <= most))
     node.fail("shape", fmt::format("asks for {:.3g} particles of {:g} bytes, but this machine's memory of {:.3g} GB "
                                    "holds {:.3g}; larger cells or fewer points_per_cell_side are required",
-                                   count, bytes_per_particle, memory() * 1e-9, most));
+                                   count, bytes_per_particle, machine_memory() * 1e-9, most));
 }
 
 void check_requests(const CaseNode& root, const Scene& scene) {

@@ -1,12 +1,12 @@
 #include "transfer_tool/sample/request_checks.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/error.hpp"
+#include "common/machine_memory.hpp"
 #include "transfer_tool/sample/mesh_geometry.hpp"
 
 namespace tailrun::transfer {
@@ -16,10 +16,6 @@ namespace {
 constexpr double bytes_per_point = 450.0;  // in memory: sample, mapped state, particle set; measured 417
 constexpr double bytes_in_file = 6.0;      // of a point on disk, at least: a column at rest packs to 6.5
 constexpr double most_points = 1e9;        // indices of the particle stage have 32 bits
-
-double memory() {
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
 
 // The key that decides on the number of points.
 std::pair<CaseNode, std::string> deciding_key(const CaseFile& file, const std::string& size,
@@ -49,13 +45,13 @@ void check_request(const CaseFile& file, const std::string& size, const Snapshot
                    const std::vector<bool>& kept, const SamplingOptions& options, const std::filesystem::path& output) {
   const double count = points_asked_for(snapshot, kept, options);
   const auto [node, key] = deciding_key(file, size, options);
-  const double most = std::min(most_points, memory() / bytes_per_point);
+  const double most = std::min(most_points, machine_memory() / bytes_per_point);
   const std::string asked = fmt::format("{:.3g} points (cells of {:g} m, {:g} points in each)", count,
                                         options.cell_size, options.points_per_cell);
   if (!(count <= most))
     node.fail(key, fmt::format("asks for {} of {:g} bytes, but this machine's memory of {:.3g} GB holds {:.3g}; larger "
                                "cells or fewer points are required",
-                               asked, bytes_per_point, memory() * 1e-9, most));
+                               asked, bytes_per_point, machine_memory() * 1e-9, most));
   if (output.empty()) return;
   std::error_code unknown;
   const auto folder = output.has_parent_path() ? output.parent_path() : std::filesystem::path(".");
