@@ -39,14 +39,13 @@ void scatter_gaps(const Particles<Dim>& P, std::size_t begin, std::size_t end,
   constexpr int T = Tile<Dim, Shape>::side, S = Shape::support;
   for (std::size_t p = begin; p < end; ++p) {
     // Distance at the particle: linear between nodes, exact but for corners of the ground.
-    double clearance = 0.0, w[3][S], unused[S], moment[S];
-    int base[3] = {0, 0, 0}, cell[3] = {0, 0, 0};
-    double f[3] = {0, 0, 0};
+    double clearance = 0.0;
+    int cell[3] = {0, 0, 0};
+    double X[3] = {0, 0, 0}, f[3] = {0, 0, 0};
     for (int d = 0; d < Dim; ++d) {
-      const double X = (P.position[d][p] - corner[d]) * h1;
-      base[d] = Shape::evaluate(X, w[d], unused, moment);
-      cell[d] = static_cast<int>(X);
-      f[d] = X - cell[d];
+      X[d] = (P.position[d][p] - corner[d]) * h1;
+      cell[d] = static_cast<int>(X[d]);
+      f[d] = X[d] - cell[d];
     }
     for (int n = 0; n < (1 << Dim); ++n) {
       double weight = 1.0;
@@ -60,6 +59,9 @@ void scatter_gaps(const Particles<Dim>& P, std::size_t begin, std::size_t end,
     const double size = Dim == 2 ? std::sqrt(P.volume[p]) : std::cbrt(P.volume[p]);
     clearance -= 0.5 * size + closed_gap / h1;
     if (!(clearance < 2.0 / h1)) continue;
+    int base[3] = {0, 0, 0};
+    double w[3][S], unused[S], moment[S];
+    for (int d = 0; d < Dim; ++d) base[d] = Shape::evaluate(X[d], w[d], unused, moment);
     const double limit = soil_limit(materials[static_cast<std::size_t>(P.material[p])], P.strength[p]);
     for (int k = 0; k < (Dim == 3 ? S : 1); ++k)
       for (int j = 0; j < S; ++j)

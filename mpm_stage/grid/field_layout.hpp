@@ -1,5 +1,6 @@
-// Where the velocity fields are: each has sums and velocities of its own in the blocks that its particles reach, one
-// field's after the other's. Tile or node block k of field f stands at number f * (occupied or active blocks) + k.
+// Where the velocity fields are: each has sums and velocities of its own in the blocks whose nodes its particles can
+// come to before the next sort, one field's after the other's. Tile or node block k of field f stands at number f *
+// (occupied or active blocks) + k.
 #pragma once
 
 #include <array>
@@ -22,22 +23,29 @@ class FieldLayout {
  public:
   using Around = std::array<int, Block<Dim>::neighbours>;
 
-  // Call after each sort. One field needs no lists of its own.
-  void update(const BlockGrid<Dim>& grid, int count) {
+  // The nodes that particles come to before the next sort, from `low` to `high` in each direction, counted from their
+  // block's first node.
+  struct Reach {
+    std::array<int, Dim> low, high;
+  };
+
+  // Call after each sort. reach(b, begin, end) is that of the particles begin .. end, which lie in occupied block b.
+  template <class ReachOf>
+  void update(const BlockGrid<Dim>& grid, int count, ReachOf reach) {
     grid_ = &grid;
     count_ = count;
-    if (count_ == 1) return;
     spans_.clear();
     first_span_.clear();
-    std::vector<std::uint8_t> has(static_cast<std::size_t>(count_) * grid.occupied(), 0);
+    std::vector<std::uint32_t> reached(static_cast<std::size_t>(count_) * grid.occupied(), 0);
     for (std::size_t b = 0; b < grid.occupied(); ++b) {
       first_span_.push_back(spans_.size());
       for (const Run& run : grid.runs(b)) {
         if (spans_.size() == first_span_.back() || spans_.back().field != run.field)
           spans_.push_back({run.begin, run.end, run.field});
         spans_.back().end = run.end;
-        has[static_cast<std::size_t>(run.field) * grid.occupied() + b] = 1;
       }
+      for (std::size_t k = first_span_.back(); k < spans_.size(); ++k)
+        reached[tile(spans_[k].field, b)] = neighbours_in(reach(b, spans_[k].begin, spans_[k].end));
     }
     first_span_.push_back(spans_.size());
 
@@ -48,8 +56,11 @@ class FieldLayout {
         Around& around = around_[number(f, a)];
         around = grid.tiles_around(a);
         bool any = false;
-        for (int& b : around) {
-          if (b >= 0 && !has[static_cast<std::size_t>(f) * grid.occupied() + static_cast<std::size_t>(b)]) b = -1;
+        for (int k = 0; k < Block<Dim>::neighbours; ++k) {
+          int& b = around[static_cast<std::size_t>(k)];
+          // Seen from that block, this one is on the other side.
+          const int position = Block<Dim>::neighbours - 1 - k;
+          if (b >= 0 && !(reached[tile(f, static_cast<std::size_t>(b))] >> position & 1U)) b = -1;
           any = any || b >= 0;
         }
         if (any) fields_at_[a] |= static_cast<std::uint8_t>(1U << f);
@@ -81,29 +92,37 @@ class FieldLayout {
   // Number of field f's tile of occupied block b.
   std::size_t tile(int f, std::size_t b) const { return static_cast<std::size_t>(f) * grid_->occupied() + b; }
   // Whether particles of field f reach active block a, and whether those of two fields do.
-  bool present(int f, std::size_t a) const { return count_ == 1 || (fields_at_[a] >> f & 1U) != 0; }
-  bool shared(std::size_t a) const { return count_ > 1 && (fields_at_[a] & (fields_at_[a] - 1U)) != 0; }
+  bool present(int f, std::size_t a) const { return (fields_at_[a] >> f & 1U) != 0; }
+  bool shared(std::size_t a) const { return (fields_at_[a] & (fields_at_[a] - 1U)) != 0; }
   // Whether nodes that two fields reach may be among those of occupied block b's tile.
-  bool near_shared(std::size_t b) const { return count_ > 1 && near_shared_[b] != 0; }
+  bool near_shared(std::size_t b) const { return near_shared_[b] != 0; }
   // The active blocks that several fields reach, the number of active block a among them (-1: it is none), and the
   // numbers of those around number s (-1: none).
   const std::vector<std::size_t>& shared_blocks() const { return shared_; }
   int shared_number(std::size_t a) const { return shared_number_[a]; }
   const Around& shared_around(std::size_t s) const { return shared_around_[s]; }
-  // Occupied blocks around active block a that hold particles of field f; -1: none.
-  const Around& around(int f, std::size_t a) const {
-    return count_ == 1 ? grid_->tiles_around(a) : around_[number(f, a)];
-  }
+  // Occupied blocks around active block a with particles of field f that reach it; -1: none.
+  const Around& around(int f, std::size_t a) const { return around_[number(f, a)]; }
   // action(span) for the particles of occupied block b, field by field.
   template <class Action>
   void for_each_span(std::size_t b, Action action) const {
-    if (count_ == 1)
-      action(FieldSpan{grid_->first_particle(b), grid_->last_particle(b), 0});
-    else
-      for (std::size_t k = first_span_[b]; k < first_span_[b + 1]; ++k) action(spans_[k]);
+    for (std::size_t k = first_span_[b]; k < first_span_[b + 1]; ++k) action(spans_[k]);
   }
 
  private:
+  // The neighbour positions of the blocks whose nodes are in reach, as bits.
+  static std::uint32_t neighbours_in(const Reach& reach) {
+    constexpr int B = Block<Dim>::cells;
+    std::uint32_t bits = 0;
+    for (int k = 0; k < Block<Dim>::neighbours; ++k) {
+      const auto step = neighbour_step<Dim>(k);
+      bool in = true;
+      for (int d = 0; d < Dim; ++d) in = in && reach.low[d] < (step[d] + 1) * B && reach.high[d] >= step[d] * B;
+      if (in) bits |= std::uint32_t{1} << k;
+    }
+    return bits;
+  }
+
   const BlockGrid<Dim>* grid_ = nullptr;
   int count_ = 1;
   std::vector<FieldSpan> spans_;

@@ -5,8 +5,9 @@
 //   w[k] weight,  d[k] derivative with respect to X,  m[k] = w[k] (k - X) first moment.
 // `shift`: a point belongs to the block that holds floor(X + shift). `apic`: D^-1 h^2 of the affine velocity (Jiang et
 // al. 2015, section 5.3), 0 where D is not a constant; then the velocity gradient takes the place of the affine matrix.
-// `mass_cutoff`: nodes with less than this share of a particle's mass are left out. Where the squared slope over the
-// weight has no bound as the weight goes to 0 (linear, GIMP), such nodes are thrown about by ever larger accelerations.
+// `mass_cutoff`: nodes with less than this share of a particle's mass are left out.
+// `largest_stiffness`: of sum d^2 / w over the places in a cell, which a particle alone on its nodes breathes with (not
+// needed of cubic B-splines).
 #pragma once
 
 #include <cmath>
@@ -21,11 +22,15 @@ struct LinearShape {
   static constexpr double shift = 0.0;
   static constexpr double apic = 0.0;
   static constexpr double mass_cutoff = 1e-6;
+  // cells; a particle closer to a line of nodes is taken to be there. On the line the weight of the nodes beyond is 0
+  // and their force is not: what a body with particles on lines of nodes is thrown apart by.
+  static constexpr double nearest = 0.1;
+  static constexpr double largest_stiffness = 1.0 / nearest + 1.0 / (1.0 - nearest);
 
   template <class Real>
   [[gnu::always_inline]] static inline auto evaluate(Real X, Real* w, Real* d, Real* m) {
     const auto base = whole(X);
-    const Real f = X - real(base);
+    const Real f = smaller(larger(X - real(base), constant<Real>(nearest)), constant<Real>(1.0 - nearest));
     w[0] = 1.0 - f;
     w[1] = f;
     d[0] = constant<Real>(-1.0);
@@ -43,6 +48,7 @@ struct QuadraticShape {
   static constexpr double shift = 0.5;
   static constexpr double apic = 4.0;
   static constexpr double mass_cutoff = 1e-18;
+  static constexpr double largest_stiffness = 6.0;
 
   template <class Real>
   [[gnu::always_inline]] static inline auto evaluate(Real X, Real* w, Real* d, Real* m) {
@@ -93,6 +99,7 @@ struct GimpShape {
   static constexpr double shift = 0.5;
   static constexpr double apic = 0.0;
   static constexpr double mass_cutoff = 1e-8;
+  static constexpr double largest_stiffness = 28.0 / 3.0;
 
   // Four particles, one after the other: the pieces of the function differ from lane to lane.
   static inline Int4 evaluate(Vec4 X, Vec4* w, Vec4* d, Vec4* m) {

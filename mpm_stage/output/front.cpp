@@ -16,6 +16,7 @@ FrontSeries<Dim>::FrontSeries(const Scene& scene)
     : moving_(moving_materials(scene)),
       output_(scene.output),
       start_(scene.particles.position),
+      rest_duration_(scene.rest.duration),
       cell_size_(scene.cell_size) {
   const ParticleSet& set = scene.particles;
   const std::vector<double> before = positions_before(set);
@@ -102,7 +103,23 @@ const FrontRow& FrontSeries<Dim>::sample(double time, const Particles<Dim>& P) {
     row.maximum_speed = std::sqrt(fastest);
   }
   rows_.push_back(std::move(row));
+  note_fastest();
   return rows_.back();
+}
+
+template <int Dim>
+void FrontSeries<Dim>::note_fastest() {
+  largest_rms_speed_ = std::max(largest_rms_speed_, rows_.back().rms_speed);
+  if (const double speed = front_speed(rest_duration_); speed > fastest_front_) fastest_front_ = speed;
+}
+
+template <int Dim>
+void FrontSeries<Dim>::restore(std::vector<FrontRow> rows) {
+  rows_.clear();
+  for (FrontRow& row : rows) {
+    rows_.push_back(std::move(row));
+    note_fastest();
+  }
 }
 
 template <int Dim>
@@ -119,6 +136,18 @@ bool FrontSeries<Dim>::at_rest(const RestCriterion& rest) const {
     if (row->rms_speed > rest.speed) return false;
     if (last.time - row->time >= rest.duration * (1.0 - 1e-9))
       return std::fabs(last.robust_front - row->robust_front) <= rest.speed * (last.time - row->time);
+  }
+  return false;
+}
+
+template <int Dim>
+bool FrontSeries<Dim>::flow_is_over(const RestCriterion& rest) const {
+  if (!rest.active || !(rest.energy_share > 0.0) || rows_.empty()) return false;
+  const double slow = std::sqrt(rest.energy_share);  // of speeds
+  if (front_speed(rest.duration) > slow * fastest_front_) return false;
+  for (auto row = rows_.rbegin(); row != rows_.rend(); ++row) {
+    if (row->rms_speed > slow * largest_rms_speed_) return false;
+    if (rows_.back().time - row->time >= rest.duration * (1.0 - 1e-9)) return true;
   }
   return false;
 }

@@ -36,6 +36,10 @@ class FrontSeries {
   const FrontRow& sample(double time, const Particles<Dim>& P);
   // Both thresholds of the criterion have held for its whole duration.
   bool at_rest(const RestCriterion& rest) const;
+  // For that duration the kinetic energy has been at most energy_share of the largest so far, and the flow's front at
+  // most as fast as its root of the fastest: what goes on moves the runout by little more (AvaFrame's com1DFA ends a
+  // run at 1 % of the energy, too).
+  bool flow_is_over(const RestCriterion& rest) const;
   // m/s, of the flow's front over the last `duration` (s) of the rows, or as long as there has been one; NaN without.
   double front_speed(double duration) const;
   const std::vector<FrontRow>& rows() const { return rows_; }
@@ -47,15 +51,19 @@ class FrontSeries {
   // m, the one number: to the flow's front, but never beyond both the soil that hangs together and the flow's body,
   // so that a few drops which a slope carries off do not make it.
   double runout(const FrontRow& row) const;
-  void restore(std::vector<FrontRow> rows) { rows_ = std::move(rows); }
+  void restore(std::vector<FrontRow> rows);
   void write(const std::filesystem::path& path) const;
 
  private:
+  void note_fastest();
+
   std::vector<bool> moving_;  // by material
   OutputOptions output_;
   std::vector<std::int32_t> followed_;  // identities
   std::vector<FrontRow> rows_;
-  std::vector<double> start_;  // m, (particles, 3), by identity
+  double rest_duration_;                                  // s
+  double largest_rms_speed_ = 0.0, fastest_front_ = 0.0;  // m/s, so far; of the front over rest_duration_
+  std::vector<double> start_;                             // m, (particles, 3), by identity
   Ahead scratch_, flowed_;
   double cell_size_, toe_ = 0.0, ground_before_ = 0.0;
   std::array<double, 2> footprint_{};

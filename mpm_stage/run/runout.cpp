@@ -120,7 +120,7 @@ class Runout {
             : fmt::format("nothing moved by more than {:g} m", scene_.output.flow_distance);
     // What a reader has to know before the runout: whether it is one.
     std::string motion;
-    if (record_.stop_reason == "end time" && f.rms_speed > scene_.rest.speed) {
+    if (record_.stop_reason != "at rest" && f.rms_speed > scene_.rest.speed) {
       const double front = front_.front_speed(scene_.rest.duration);
       motion = fmt::format(", soil still in motion (root mean square {:.2g} m/s{})", f.rms_speed,
                            std::isfinite(front) ? fmt::format(", the flow's front {:.2g} m/s", front) : "");
@@ -274,12 +274,16 @@ class Runout {
     }
     if (frame_due) frames_.write(particle_set<Dim>(scene_, solver_->particles(), record_.time));
     record_.output_seconds += seconds_since(since);
-    if (!series_due || record_.time < shaking_end || !front_.at_rest(scene_.rest)) return false;
-    record_.stop_reason = "at rest";
-    return true;
+    if (!series_due || record_.time < shaking_end) return false;
+    if (front_.at_rest(scene_.rest))
+      record_.stop_reason = "at rest";
+    else if (front_.flow_is_over(scene_.rest))
+      record_.stop_reason = "flow over";
+    return !record_.stop_reason.empty();
   }
 
   void mind_checkpoints() {
+    if (!solver_->resumable()) return;
     const std::string reason = control_.interruption ? control_.interruption(record_.steps) : "";
     if (!reason.empty()) {
       save();

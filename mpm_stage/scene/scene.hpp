@@ -24,6 +24,9 @@ struct RestCriterion {
   bool active = true;
   double speed = 0.01;    // m/s, root mean square speed of the moving materials and speed of the front
   double duration = 1.0;  // s, for which both have to hold
+  // 1, of the largest kinetic energy so far: with no more than this left for `duration` the flow counts as over. 0:
+  // never
+  double energy_share = 0.0;
 };
 
 struct TrackedPoint {

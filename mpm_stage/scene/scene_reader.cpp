@@ -8,8 +8,10 @@
 #include "common/plausible_material.hpp"
 #include "common/plausible_state.hpp"
 #include "common/warnings.hpp"
+#include "mpm_stage/grid/shape_functions.hpp"
 #include "mpm_stage/scene/request_checks.hpp"
 #include "mpm_stage/scene/scene.hpp"
+#include "mpm_stage/step/lone_particle.hpp"
 
 namespace tailrun::mpm {
 
@@ -101,14 +103,10 @@ void read_sleep(const CaseNode& root, Scene& scene) {
     root.fail("sleep", "needs scheme/transfer 'aflip' or 'flip': APIC puts momentum and forces on the nodes as one");
 }
 
-// A particle that no other shares its nodes with, as it flies or in a velocity field of few particles, breathes on
-// them. Its strain follows the nodes' velocities after their own forces, so with S = sum (w')^2 / w (4 to 6 for
-// quadratic B-splines) and the modulus M of equal strain in the plane, up to 2 rho c^2, that grows from M dt^2 / (rho
-// h^2) = 2 / (S - 2) on: dt = 0.5 h / c at the worst place in a cell. (In space M is up to 3 rho c^2 and the worst step
-// 0.41 h / c.)
+// Splines carry particles that are alone on their nodes between others; elsewhere they bear longer steps.
 void warn_of_long_steps(const Scene& scene) {
-  constexpr double longest = 0.5;
   const SolverOptions& o = scene.solver;
+  const double longest = longest_courant(QuadraticShape::largest_stiffness, 2);
   if (o.shape != ShapeName::quadratic || o.fields.count < 2 || o.courant <= longest) return;
   add_warning(fmt::format(
       "time/courant is {}: steps longer than {} let single particles between other soil swing ever more, until "
@@ -116,10 +114,24 @@ void warn_of_long_steps(const Scene& scene) {
       o.courant, longest));
 }
 
+// With linear functions and GIMP any particle at a body's side may be all but alone on a node.
+double read_courant(const CaseNode& time, ShapeName shape, int dimension, double usual) {
+  double longest = 1e30;
+  if (shape == ShapeName::linear) longest = longest_courant(LinearShape::largest_stiffness, dimension);
+  if (shape == ShapeName::gimp) longest = longest_courant(GimpShape::largest_stiffness, dimension);
+  const double courant = time.number_or("courant", "1", {0.0, 1.5, true, false}, std::min(usual, longest));
+  if (courant <= longest) return courant;
+  add_warning(fmt::format(
+      "time/courant is {}: with these shape functions (scheme/shape_function) particles at the side of a body "
+      "bear steps up to {:.3g}, which is taken",
+      courant, longest));
+  return longest;
+}
+
 void read_time(const CaseNode& root, Scene& scene) {
   const CaseNode time = root.object("time");
   scene.end_time = time.number("end", "s", Range::positive());
-  scene.solver.courant = time.number_or("courant", "1", {0.0, 1.5, true, false}, scene.solver.courant);
+  scene.solver.courant = read_courant(time, scene.solver.shape, scene.dimension, scene.solver.courant);
   scene.solver.maximum_step = time.number_or("maximum_step", "s", Range::positive(), 1e30);
   scene.energy_growth_limit = time.number_or("energy_growth_limit", "1", Range::positive(), scene.energy_growth_limit);
   scene.checkpoint_interval =
@@ -128,6 +140,7 @@ void read_time(const CaseNode& root, Scene& scene) {
   scene.rest.active = rest.boolean_or("stop", true);
   scene.rest.speed = rest.number_or("speed", "m/s", Range::positive(), scene.rest.speed);
   scene.rest.duration = rest.number_or("duration", "s", Range::positive(), scene.rest.duration);
+  scene.rest.energy_share = rest.number_or("energy_share", "1", {0.0, 0.1}, scene.rest.energy_share);
 }
 
 void read_output(const CaseNode& root, Scene& scene) {

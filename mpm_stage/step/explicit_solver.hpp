@@ -109,6 +109,7 @@ class ExplicitSolver final : public Solver<Dim> {
 
   void resume(Particles<Dim> particles, const SolverState<Dim>& s) override;
   SolverState<Dim> state() const override;
+  bool resumable() const override { return !fields_.several() || surfaces_due_; }
 
   StepReport step(const std::array<double, Dim>& body, const std::array<double, Dim>& inertial, double limit) override {
     StepReport report;
@@ -126,6 +127,7 @@ class ExplicitSolver final : public Solver<Dim> {
     }
     next_dt_ = longest_step(limit);
     report.next_dt = next_dt_;
+    if (fields_.several()) mind_surfaces(step_drift_, report.sorted);
     if (averaging_) average(report.sorted);
     if (water_.any()) water_.set_time(time_ + dt);
     update_stresses(dt);
@@ -282,6 +284,7 @@ class ExplicitSolver final : public Solver<Dim> {
   void limit_volumes();
   void sort();
   void lay_out();
+  typename FieldLayout<Dim>::Reach reach_of(std::size_t b, std::size_t begin, std::size_t end) const;
   std::vector<SurfaceRole> surface_roles() const;
   GripMemory<Dim> grip_memory() const;
   void remember_grip(const GripMemory<Dim>& memory);
@@ -307,6 +310,7 @@ class ExplicitSolver final : public Solver<Dim> {
   NodeBodies bodies_at(std::size_t a, int n, unsigned there, const NodeSums* node) const;
   void set_motion(std::size_t node, BodyAtNode<Dim>& body) const;
   void join_sides(std::size_t a, int n, const NodeSums* node, GridSums<Dim>& sums);
+  void mind_surfaces(double drift, bool sorted);
   void gather_interfaces();
   void smooth_surfaces();
   SurfaceAround<Dim> surface_around(int f, std::size_t a, int n) const;
@@ -382,7 +386,12 @@ class ExplicitSolver final : public Solver<Dim> {
   AlignedVector<InterfaceNode> interface_tiles_;  // per occupied block, only with several fields
   AlignedVector<InterfaceNode> interfaces_;       // per block that several fields reach
   AlignedVector<Vec4> surfaces_;                  // the same: size and directions, around the node
-  std::vector<std::uint8_t> meeting_;  // per active block: nodes at which fields met in the last step; several fields
+  // Of a node: whether fields met there in the last step, and whether their surfaces are known.
+  enum Meeting : std::uint8_t { not_met, met, surface_known };
+  std::vector<std::uint8_t> meeting_;              // Meeting, per active block; several fields
+  double step_drift_ = 0.0, surface_drift_ = 0.0;  // cells, in this step and since surfaces were found
+  int surface_age_ = 0;                            // steps since then
+  bool surfaces_due_ = true;                       // to be found from the particles' places as they are
   HalfSpaces<Shape> half_spaces_;
   // Per pair of fields and per block that several fields reach.
   std::vector<FieldGrip<Dim>> field_grip_;

@@ -79,6 +79,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& 
   if constexpr (Split) work_.transfer += kinetic_ - gathered + nodes_gain_;
   kinetic_ = report.kinetic_energy;
   drift_ += far * h1_;
+  step_drift_ = far * h1_;
   add_time(seconds_.grid_to_particles, since);
 }
 
@@ -148,9 +149,12 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses(double dt) {
   for (std::size_t b = 0; b < grid_.occupied(); ++b) {
     if (sleep_.asleep(b)) {
       stress_work_[b] = {};
-      if (!sleep_.stale(b)) continue;
-      sleep_.put_on_nodes(b);
-      scatter_block(b);
+      if (sleep_.stale(b)) {
+        sleep_.put_on_nodes(b);
+        scatter_block(b);
+      } else if (surfaces_due_ && fields_.near_shared(b)) {
+        scatter_interfaces(b);
+      }
       continue;
     }
     will_write(tiles_.data() + b * tile_nodes, tile_nodes);
@@ -219,7 +223,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::scatter_block(std::size_t b) {
     if (water_.any())
       water_.template scatter<Shape, Split>(grid_, b, next_dt_, corner(b), P_, span.begin, span.end, tile, beside);
   });
-  if (fields_.near_shared(b)) scatter_interfaces(b);
+  if (surfaces_due_ && fields_.near_shared(b)) scatter_interfaces(b);
   if (ground_.any()) scatter_ground_gaps(b);
 }
 

@@ -74,32 +74,50 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::sort() {
   add_time(seconds_.sort, since);
 }
 
+// A node feels particles that are nearer than half of its function's width.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+typename FieldLayout<Dim>::Reach ExplicitSolver<Dim, Shape, Split, Transfer>::reach_of(std::size_t b, std::size_t begin,
+                                                                                       std::size_t end) const {
+  constexpr double far = 0.5 * Shape::support + largest_drift;  // cells
+  typename FieldLayout<Dim>::Reach reach;
+  for (int d = 0; d < Dim; ++d) {
+    const auto [low, high] = std::minmax_element(P_.position[d].begin() + static_cast<std::ptrdiff_t>(begin),
+                                                 P_.position[d].begin() + static_cast<std::ptrdiff_t>(end));
+    const double first = grid_.origin()[d] + grid_.occupied_index(b)[d] * Block<Dim>::cells * h_;
+    reach.low[d] = static_cast<int>(std::floor((*low - first) * h1_ - far));
+    reach.high[d] = static_cast<int>(std::ceil((*high - first) * h1_ + far));
+  }
+  return reach;
+}
+
 // Memory and neighbours of the grid's blocks.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
   const GripMemory<Dim> memory = grip_memory();
   ground_.update(grid_);
   mirrors_.update(grid_, wall_nodes_, Shape::support == 4 ? 2 : 1);
-  fields_.update(grid_, options_.fields.count);
+  fields_.update(grid_, options_.fields.count,
+                 [this](std::size_t b, std::size_t begin, std::size_t end) { return reach_of(b, begin, end); });
   const auto several = static_cast<std::size_t>(fields_.count());
   tiles_.resize(several * grid_.occupied() * tile_nodes);
   if (Split) beside_.resize(tiles_.size());
   // Where a field is not, nothing is computed, and what looks there finds it at rest and without mass.
+  velocity_.assign(several * grid_.active() * block_nodes, Vec4{});
+  change_.clear();
+  sums_.clear();
+  force_sums_.clear();
+  grip_.clear();
   if (fields_.several()) {
-    velocity_.assign(several * grid_.active() * block_nodes, Vec4{});
-    change_.clear();
-    sums_.clear();
-    force_sums_.clear();
-    grip_.clear();
     interface_tiles_.resize(tiles_.size());
     // Who meets where is found out anew in the next step.
-    meeting_.assign(grid_.active() * block_nodes, 1);
+    meeting_.assign(grid_.active() * block_nodes, not_met);
+    for (const std::size_t a : fields_.shared_blocks())
+      std::fill_n(meeting_.begin() + static_cast<std::ptrdiff_t>(a * block_nodes), block_nodes, met);
     interfaces_.assign(several * fields_.shared_blocks().size() * block_nodes, InterfaceNode{});
     const auto pairs = static_cast<std::size_t>(pairs_of(fields_.count()));
     field_grip_.assign(pairs * fields_.shared_blocks().size() * block_nodes, FieldGrip<Dim>{});
     field_spread_.resize(field_grip_.size());
   }
-  velocity_.resize(several * grid_.active() * block_nodes);
   if (separate_change) change_.resize(velocity_.size());
   if (options_.local_damping > 0.0) damped_.assign(velocity_.size(), {});
   if (needs_all_sums()) {
@@ -258,7 +276,7 @@ SolverState<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::state() const {
   s.removed = removed_;
   s.held = held();
   s.sleep_clocks = sleep_.clocks();
-  s.meeting.assign(meeting_.begin(), meeting_.end());
+  for (const std::uint8_t meeting : meeting_) s.meeting.push_back(meeting == not_met ? not_met : met);
   s.ponds = water_.states();
   s.pond_shares = water_.shares();
   return s;

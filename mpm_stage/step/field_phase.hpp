@@ -111,10 +111,12 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::part_fields(std::size_t a, dou
   for (int n = 0; n < block_nodes; ++n) {
     const unsigned there = fields_at(a, n, node);
     const bool several = (there & (there - 1U)) != 0, sides = options_.fields.by_side && there == both_sides;
-    const bool known = meeting[n] != 0;
-    meeting[n] = several && !sides ? 1 : 0;
+    if (!several || sides)
+      meeting[n] = not_met;
+    else if (meeting[n] == not_met)
+      meeting[n] = met;
     if (sides) join_sides(a, n, node, sums);
-    if (!meeting[n] || !known) continue;
+    if (meeting[n] != surface_known) continue;
     NodeBodies bodies = bodies_at(a, n, there, node);
     auto pairs = contact_pairs(bodies, dt);
     if (contact && contact[n].count > 0) {

@@ -1,4 +1,8 @@
 // The surfaces of the materials in each velocity field, for contact between them; included by explicit_solver.hpp.
+//
+// They change as particles move, by a few hundredths of a cell in a step at most, and cost a third of it, so they are
+// found again when a particle may have moved by `most_surface_drift` since, every `most_surface_age` steps, and after a
+// sort.
 #pragma once
 
 #include "mpm_stage/grid/binomial_sums.hpp"
@@ -6,8 +10,20 @@
 
 namespace tailrun::mpm {
 
+// Whether surfaces are to be found again with the particles' places after this step.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::mind_surfaces(double drift, bool sorted) {
+  constexpr double most_surface_drift = 0.05;  // cells; contact tells gaps of 0.15 cells from none
+  constexpr int most_surface_age = 8;          // steps
+  surface_drift_ += drift;
+  surfaces_due_ = sorted || surface_drift_ > most_surface_drift || ++surface_age_ >= most_surface_age;
+  if (!surfaces_due_) return;
+  surface_drift_ = 0.0;
+  surface_age_ = 0;
+}
+
 // The surfaces of the materials in block b, for contact: of particles that reach nodes at which fields met in the last
-// step. A node where they meet for the first time has a trace of the one, and waits for the next.
+// step. A node where they meet for the first time has a trace of the one, and waits for the next time.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::scatter_interfaces(std::size_t b) {
   constexpr int S = Shape::support, T = Tile<Dim, Shape>::side;
@@ -39,16 +55,18 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather_interfaces() {
   const std::vector<std::size_t>& blocks = fields_.shared_blocks();
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t s = 0; s < blocks.size(); ++s) {
-    const std::uint8_t* met = meeting_.data() + blocks[s] * block_nodes;
-    const bool any = std::any_of(met, met + block_nodes, [](std::uint8_t m) { return m != 0; });
+    std::uint8_t* meeting = meeting_.data() + blocks[s] * block_nodes;
+    const bool any = std::any_of(meeting, meeting + block_nodes, [](std::uint8_t m) { return m != not_met; });
     for (int f = 0; f < fields_.count(); ++f) {
       InterfaceNode* node = interfaces_.data() + interface_of(f, blocks[s]);
       if (any && fields_.present(f, blocks[s]))
         gather_tiles<Dim, Shape>(fields_.around(f, blocks[s]),
                                  interface_tiles_.data() + fields_.tile(f, 0) * tile_nodes, node);
       for (int n = 0; n < block_nodes; ++n)
-        if (!met[n] || !any) node[n] = InterfaceNode{};  // its sums are not whole
+        if (meeting[n] == not_met || !any) node[n] = InterfaceNode{};  // its sums are not whole
     }
+    for (int n = 0; any && n < block_nodes; ++n)
+      if (meeting[n] != not_met) meeting[n] = surface_known;
   }
 }
 
@@ -60,8 +78,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::smooth_surfaces() {
   surfaces_.resize(interfaces_.size());
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t s = 0; s < blocks.size(); ++s) {
-    const std::uint8_t* met = meeting_.data() + blocks[s] * block_nodes;
-    if (std::none_of(met, met + block_nodes, [](std::uint8_t m) { return m != 0; })) continue;
+    const std::uint8_t* meeting = meeting_.data() + blocks[s] * block_nodes;
+    if (std::none_of(meeting, meeting + block_nodes, [](std::uint8_t m) { return m != not_met; })) continue;
     for (int f = 0; f < fields_.count(); ++f) {
       if (!options_.fields.firm(f) || !fields_.present(f, blocks[s])) continue;
       const InterfaceNode* nodes = interfaces_.data() + interface_of(f, blocks[0]);

@@ -128,6 +128,8 @@ class Solver {
   // Takes the place of start(): goes on with `particles`, in the order in which particles() gave them, from `state`.
   virtual void resume(Particles<Dim> particles, const SolverState<Dim>& state) = 0;
   virtual SolverState<Dim> state() const = 0;
+  // Whether a run that goes on from state() makes the same bits as this one: surfaces between fields are not kept.
+  virtual bool resumable() const = 0;
   // Makes one step with body acceleration `body` (gravity, m/s2) and `inertial` (minus the base acceleration); the one
   // after it will be at most `limit` long. Throws ComputationError with the particle, its position, material and the
   // cause when a value is not finite, a particle inverts or moves more than a cell.

@@ -59,7 +59,8 @@ std::string text_of(const std::filesystem::path& path) {
   return text.str();
 }
 
-// Runs the case text in `to`, stopping after `stop` steps unless that is 0.
+// Runs the case text in `to`, stopping after `stop` steps (or the next ones, when it can go on from there) unless that
+// is 0.
 void run(const Folder& folder, const std::string& to, bool resume, long stop, const std::string& text = case_text) {
   std::ofstream(folder / "mpm.json") << text;
   const CaseFile file(folder / "mpm.json");
@@ -70,7 +71,7 @@ void run(const Folder& folder, const std::string& to, bool resume, long stop, co
   RunControl control;
   control.resume = resume;
   control.resume_command = "run again";
-  control.interruption = [stop](long steps) { return std::string(stop > 0 && steps == stop ? "the test" : ""); };
+  control.interruption = [stop](long steps) { return std::string(stop > 0 && steps >= stop ? "the test" : ""); };
   run_scene<2>(scene, folder / to, provenance, control);
 }
 

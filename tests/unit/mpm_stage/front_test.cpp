@@ -165,3 +165,46 @@ TEST_CASE(
   scene.output.footprint = {{0.0, 2.0}};
   CHECK(FrontSeries<2>(scene).ground_before() == doctest::Approx(1.0));
 }
+
+TEST_CASE("a flow is over when little of its energy is left and its front is slow, however long some soil creeps") {
+  Scene scene = row_of_particles();
+  scene.rest.energy_share = 0.01;
+  scene.rest.duration = 1.0;
+  Particles<2> P = solver_row();
+  // All at `speed`, and the front at x; a sample every half second.
+  FrontSeries<2> front(scene);
+  double time = 0.0;
+  const auto sample = [&](FrontSeries<2>& series, double speed, double x) {
+    for (double& v : P.velocity[0]) v = speed;
+    P.position[0][10] = x;
+    series.sample(time, P);
+    time += 0.5;
+    return series.flow_is_over(scene.rest);
+  };
+  CHECK(!sample(front, 0.0, 10.0));
+  CHECK(!sample(front, 10.0, 20.0));  // 10 m/s
+  CHECK(!sample(front, 10.0, 25.0));
+  CHECK(!sample(front, 10.0, 30.0));
+  CHECK(!sample(front, 0.99, 31.5));  // 11 m/s over the last second
+  CHECK(!sample(front, 0.99, 33.0));  // energy has been low for half a second, the front is fast
+  CHECK(!sample(front, 0.99, 34.5));
+  CHECK(!sample(front, 0.99, 34.6));
+  SUBCASE("over") {
+    CHECK(sample(front, 0.99, 34.7));
+  }
+  SUBCASE("a tongue runs on") {
+    CHECK(!sample(front, 0.99, 36.0));
+  }
+  SUBCASE("a second pulse") {
+    CHECK(!sample(front, 2.0, 34.7));
+  }
+  SUBCASE("not asked for") {
+    scene.rest.energy_share = 0.0;
+    CHECK(!sample(front, 0.99, 34.7));
+  }
+  SUBCASE("gone on with from a checkpoint") {
+    FrontSeries<2> again(scene);
+    again.restore(front.rows());
+    CHECK(sample(again, 0.99, 34.7));
+  }
+}

@@ -17,21 +17,25 @@ namespace {
 
 struct Asked {
   std::string cell = "0.5", end = "1", time = {}, high = "[2, 2]", modulus = "1e6", output = {}, friction = "0.5",
-              ground = "[-50, 0], [50, 0]";
+              ground = "[-50, 0], [50, 0]", scheme = {};
 };
 
-// The refusal, "" when the scene is read.
-std::string refusal(const Asked& a) {
+Scene scene_of(const Asked& a) {
   const auto path = std::filesystem::temp_directory_path() / fmt::format("tailrun_scene_requests_{}.json", getpid());
   std::ofstream(path) << fmt::format(
       R"({{ "grid": {{ "cell_size": {} }}, "time": {{ "end": {}{} }},
       "materials": {{ "soil": {{ "model": "linear_elastic", "youngs_modulus": {}, "poisson_ratio": 0.3 }} }},
       "particles": [{{ "shape": "box", "low": [0, 0], "high": {}, "material": "soil" }}],
-      "terrain": [{{ "points": [{}], "friction": {} }}], "output": {{ {} }} }})",
-      a.cell, a.end, a.time, a.modulus, a.high, a.ground, a.friction, a.output);
+      "terrain": [{{ "points": [{}], "friction": {} }}], "output": {{ {} }}, "scheme": {{ {} }} }})",
+      a.cell, a.end, a.time, a.modulus, a.high, a.ground, a.friction, a.output, a.scheme);
+  const CaseFile file(path);
+  return read_scene(file, {});
+}
+
+// The refusal, "" when the scene is read.
+std::string refusal(const Asked& a) {
   try {
-    const CaseFile file(path);
-    read_scene(file, {});
+    scene_of(a);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -89,4 +93,23 @@ TEST_CASE("a friction in degrees is warned of with its tangent") {
 TEST_CASE("ground that crosses itself is refused with the place") {
   check({.ground = "[-50, 0], [50, 0], [50, 5], [44, -5]"},
         "/terrain/0/points: the line crosses or touches itself at (47, 0) m: segment 0 (points 0 and 1) and segment 2");
+}
+
+TEST_CASE("linear functions and GIMP take steps that a particle at a body's side bears, and say so") {
+  struct Wanted {
+    const char *shape, *courant;
+    double taken;
+  };
+  for (const auto& [shape, courant, taken] :
+       {Wanted{"gimp", "0.8", 0.369}, {"linear", "0.8", 0.331}, {"gimp", "0.3", 0.3}, {"quadratic", "0.8", 0.8}}) {
+    CAPTURE(shape);
+    forget_warnings();
+    const Scene scene = scene_of({.time = fmt::format(R"(, "courant": {})", courant),
+                                  .scheme = fmt::format(R"("shape_function": "{}")", shape)});
+    CHECK(scene.solver.courant == doctest::Approx(taken).epsilon(2e-3));
+    CHECK(warnings().empty() == (taken == std::stod(courant)));
+  }
+  forget_warnings();
+  CHECK(scene_of({.scheme = R"("shape_function": "gimp")"}).solver.courant == doctest::Approx(0.369).epsilon(2e-3));
+  CHECK(warnings().empty());
 }

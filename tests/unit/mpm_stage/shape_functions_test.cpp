@@ -2,11 +2,15 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
+
 using namespace tailrun::mpm;
 
-// Sums over a shape's nodes at X: weights, derivatives, first moment from the weights and as given.
+// Sums over a shape's nodes at X: weights, derivatives, first moment from the weights and as given, about the place
+// that the shape takes a particle at X to be at.
 template <class Shape>
-void check_completeness() {
+void check_completeness(double (*place)(double) = [](double X) { return X; }) {
   for (double X = 3.0; X < 5.0; X += 0.0137) {
     double w[4], d[4], m[4], sum = 0, slope = 0, position = 0, gradient = 0, moment = 0;
     const int base = Shape::evaluate(X, w, d, m);
@@ -16,12 +20,12 @@ void check_completeness() {
       position += w[k] * (base + k);
       gradient += d[k] * (base + k);
       moment += m[k];
-      CHECK(m[k] == doctest::Approx(w[k] * (base + k - X)).epsilon(1e-12));
+      CHECK(m[k] == doctest::Approx(w[k] * (base + k - place(X))).epsilon(1e-12));
       CHECK(w[k] >= 0.0);
     }
     CHECK(sum == doctest::Approx(1.0).epsilon(1e-13));
     CHECK(std::fabs(slope) < 1e-13);
-    CHECK(position == doctest::Approx(X).epsilon(1e-13));
+    CHECK(position == doctest::Approx(place(X)).epsilon(1e-13));
     CHECK(gradient == doctest::Approx(1.0).epsilon(1e-12));
     CHECK(std::fabs(moment) < 1e-13);
   }
@@ -29,7 +33,9 @@ void check_completeness() {
 
 TEST_CASE("shape functions reproduce constants and linear fields") {
   SUBCASE("linear") {
-    check_completeness<LinearShape>();
+    check_completeness<LinearShape>([](double X) {
+      return std::floor(X) + std::clamp(X - std::floor(X), LinearShape::nearest, 1.0 - LinearShape::nearest);
+    });
   }
   SUBCASE("quadratic") {
     check_completeness<QuadraticShape>();
@@ -67,4 +73,24 @@ TEST_CASE("B-spline derivatives are those of the weights") {
     if (a != b || a != c) continue;
     for (int k = 0; k < 3; ++k) CHECK(d[k] == doctest::Approx((wb[k] - wa[k]) / (2 * e)).epsilon(1e-7));
   }
+}
+
+template <class Shape>
+void check_stiffness() {
+  double largest = 0.0;
+  for (double X = 3.0; X < 4.0; X += 1e-4 * (1.0 + 1e-5)) {
+    double w[4], d[4], m[4], stiffness = 0.0;
+    Shape::evaluate(X, w, d, m);
+    for (int k = 0; k < Shape::support; ++k)
+      if (w[k] > 0.0) stiffness += d[k] * d[k] / w[k];
+    largest = std::max(largest, stiffness);
+  }
+  CHECK(largest <= Shape::largest_stiffness * (1.0 + 1e-9));
+  CHECK(largest > 0.999 * Shape::largest_stiffness);
+}
+
+TEST_CASE("no place in a cell is stiffer for a lone particle than a shape says") {
+  check_stiffness<LinearShape>();
+  check_stiffness<QuadraticShape>();
+  check_stiffness<GimpShape>();
 }
