@@ -10,7 +10,7 @@ template <int Dim>
 void ContactNodes<Dim>::update(const BlockGrid<Dim>& grid) {
   if (terrain_.empty()) return;
   constexpr int B = Block<Dim>::cells;
-  const double h = grid.cell_size();
+  const double h = grid.cell_size(), far = 1.5 * std::sqrt(2.0) * h;
   block_start_.resize(grid.active());
   for (std::size_t a = 0; a < grid.active(); ++a) {
     const auto& index = grid.active_index(a);
@@ -24,13 +24,17 @@ void ContactNodes<Dim>::update(const BlockGrid<Dim>& grid) {
       // A particle within two cells of a node in contact, and the nodes around it, count as near.
       if (terrain_.distance(x0 + half, y0 + half) < reach_ + 4.0 * h + 1.4143 * half) {
         it->second = static_cast<std::ptrdiff_t>(contacts_.size());
-        const GroundSurface<B> surface(terrain_, x0, y0, h, reach_);
+        const GroundSurface<B> surface(terrain_, x0, y0, h);
         for (int n = 0; n < Block<Dim>::nodes; ++n) {
           const int i = n % B, j = n / B % B;
           NodeContact node;
-          node.count = terrain_.contacts(x0 + i * h, y0 + j * h, reach_, node.point, node.adhere);
+          const double x = x0 + i * h, y = y0 + j * h;
+          node.count = terrain_.contacts(x, y, reach_, node.point, node.adhere);
+          bool adhere_beside = false;
+          if (node.count == 0 && surface[j * B + i] > 0.0)
+            node.beside = terrain_.contacts(x, y, far, node.point, adhere_beside) > 0;
           contacts_.push_back(node);
-          distances_.push_back(terrain_.distance(x0 + i * h, y0 + j * h));
+          distances_.push_back(terrain_.distance(x, y));
           surfaces_.push_back(Dim == 3 ? surface[j * B + i] * h : surface[j * B + i]);
         }
       }

@@ -14,6 +14,9 @@ namespace tailrun::mpm {
 struct NodeContact {
   int count = 0;
   bool adhere = false;
+  // Beyond contact's reach (count is 0), but the ground's surface lies within the node's function: point[0] is that of
+  // the ground beside it.
+  bool beside = false;
   std::array<TerrainPoint, 2> point;
 };
 

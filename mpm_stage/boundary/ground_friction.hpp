@@ -58,6 +58,22 @@ inline double carried_by_soil(const Gap& soil, double surface, double dt) {
   return soil.volume > 0.0 ? dt * surface * soil.strength / soil.volume : no_soil_limit;
 }
 
+// The grip of a node beyond contact's reach whose function the ground's surface still cuts: of phi = 0 soil it takes
+// part in what nodes in contact share, for the shear stress at the surface pulls at it, too. Without that, soil can
+// slide off inside itself between these rows of nodes, held back by as much less than it carries as its functions reach
+// into the ground: a slab with a factor of safety of 1.05 ran away at 11 m/s in 8 s where the ground lay 0.45 cells
+// over a row of nodes. (Frictional soil presses on fewer nodes by as much more.) `soil` is what is known of the soil at
+// the node, `mass` (kg) the node's, `carried` (N s) what the soil carries there.
+inline NodeGrip grip_beside(const NodeContact& contact, const Gap& soil, double mass, double carried) {
+  NodeGrip grip;
+  const bool limited = soil.volume > 0.0 && soil.strength < smallest_unlimited * soil.volume;
+  if (!limited) return grip;
+  grip.mass = mass;
+  grip.normal = contact.point[0].normal;
+  grip.carried = carried;
+  return grip;
+}
+
 // m/s, the part of `v` along the ground.
 template <int Dim>
 inline std::array<double, Dim> sliding_of(const NodeGrip& grip, const std::array<double, Dim>& v) {

@@ -1,4 +1,5 @@
-// The part of the ground's surface that each node of a block stands for; the nodes in contact make the whole ground.
+// The part of the ground's surface that each node of a block stands for, by its function there; all nodes together make
+// the whole ground.
 #pragma once
 
 #include <algorithm>
@@ -15,11 +16,7 @@ namespace tailrun::mpm {
 template <int B>
 class GroundSurface {
  public:
-  // Nodes under the distance `reach` (m) are in contact.
-  GroundSurface(const Terrain& terrain, double x0, double y0, double h, double reach) : h_(h), reach_(reach) {
-    for (int j = 0; j < side; ++j)
-      for (int i = 0; i < side; ++i)
-        distance_[j * side + i] = terrain.distance(x0 + (i - margin) * h, y0 + (j - margin) * h);
+  GroundSurface(const Terrain& terrain, double x0, double y0, double h) : h_(h) {
     for (const auto& line : terrain.lines())
       for (std::size_t s = 0; s < line.size(); ++s) share(line[s], x0, y0, s == 0, s + 1 == line.size());
   }
@@ -28,11 +25,11 @@ class GroundSurface {
   double operator[](int node) const { return length_[node]; }
 
  private:
-  static constexpr int margin = 3, side = B + 2 * margin;  // nodes around the block
+  static constexpr int margin = 3;  // nodes around the block, so that coordinates are positive
   static constexpr double pieces_per_cell = 8.0;
   static constexpr double low = -1.5, high = B + 0.5;  // cells from (x0, y0), within reach of the block's nodes
 
-  // action(node, index among all, weight) for the nodes around (x, y), cells from (x0, y0).
+  // action(node, weight) for the block's nodes around (x, y), cells from (x0, y0).
   template <class Action>
   static void around(double x, double y, Action action) {
     double wx[3], wy[3], unused[3], moment[3];
@@ -41,13 +38,12 @@ class GroundSurface {
     for (int j = 0; j < 3; ++j)
       for (int i = 0; i < 3; ++i) {
         const int I = i0 + i - margin, J = j0 + j - margin;
-        const bool own = I >= 0 && I < B && J >= 0 && J < B;
-        action(own ? J * B + I : -1, (j0 + j) * side + i0 + i, wx[i] * wy[j]);
+        if (I >= 0 && I < B && J >= 0 && J < B) action(J * B + I, wx[i] * wy[j]);
       }
   }
 
-  // A segment is cut into short pieces, and the nodes in contact around each share it by their weights. The first and
-  // the last segment of a line go on without end.
+  // A segment is cut into short pieces, and the nodes around each share it by their weights. The first and the last
+  // segment of a line go on without end.
   void share(const Terrain::Segment& segment, double x0, double y0, bool first, bool last) {
     const double ax = (segment.a[0] - x0) / h_, ay = (segment.a[1] - y0) / h_;
     const double tx = (segment.b[0] - segment.a[0]) / h_, ty = (segment.b[1] - segment.a[1]) / h_;
@@ -65,16 +61,11 @@ class GroundSurface {
     for (double k = std::floor(from * pieces); from < to && k < to * pieces; ++k) {
       const double at = (k + 0.5) / pieces;
       if (at < from || at >= to) continue;
-      double sum = 0.0;
-      around(ax + at * tx, ay + at * ty, [&](int, int n, double w) { sum += distance_[n] <= reach_ ? w : 0.0; });
-      around(ax + at * tx, ay + at * ty, [&](int own, int n, double w) {
-        if (own >= 0 && distance_[n] <= reach_) length_[own] += w / sum * cells / pieces * h_;
-      });
+      around(ax + at * tx, ay + at * ty, [&](int n, double w) { length_[n] += w * cells / pieces * h_; });
     }
   }
 
-  double h_, reach_;
-  double distance_[side * side];
+  double h_;
   double length_[B * B] = {};
 };
 

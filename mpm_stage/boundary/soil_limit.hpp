@@ -15,7 +15,8 @@
 namespace tailrun::mpm {
 
 // More than any friction, and finite, so that nodes can average: one that soil without a limit reaches, too, has none.
-constexpr double no_soil_limit = 1e30;  // Pa
+constexpr double no_soil_limit = 1e30;       // Pa
+constexpr double smallest_unlimited = 1e15;  // Pa, means over soils of which one has no limit are more
 
 // Pa; `cohesion` is the particle's.
 inline double soil_limit(const MaterialConstants& k, double cohesion) {

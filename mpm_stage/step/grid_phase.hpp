@@ -206,15 +206,19 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::touch_boundaries(int f, std::s
     }
     std::array<double, Dim> v = velocity_at(k), before{};
     const std::array<double, Dim> pushed = v;
+    const auto carried = [&] {
+      const double surface = ground_.surfaces(a)[n] * share_inside<Dim>(wall_nodes_, grid_.node_index(a, n));
+      return carried_by_soil((*gap)[n], surface, dt);
+    };
+    if (contact && contact[n].beside && options_.soil_limits_friction)
+      grip_[k] = grip_beside(contact[n], (*gap)[n], m, carried());
     if (contact && contact[n].count > 0) {
       NodeGrip& grip = grip_[k];
       if (!(settled[n] >> f & 1U)) grip = stop_approach<Dim>(contact[n], m, std::max(0.0, (*gap)[n].value) / dt, v);
       const double share = smoothing_share(dt * h1_ * fastest_wave_, dt * h1_ * sliding_speed<Dim>(contact[n], v));
       smooth_grip(contact[n], m, dt, share, smoothed_grip_[k], grip);
       grip.carried = grip.friction;
-      if (options_.soil_limits_friction)
-        grip.carried = carried_by_soil(
-            (*gap)[n], ground_.surfaces(a)[n] * share_inside<Dim>(wall_nodes_, grid_.node_index(a, n)), dt);
+      if (options_.soil_limits_friction) grip.carried = carried();
     }
     if (wall_nodes_.any) apply_walls<Dim>(wall_nodes_, grid_.node_index(a, n), m, v, sums);
     for (int d = 0; d < Dim; ++d) sums.impulse[d] += m * (v[d] - pushed[d]);

@@ -134,7 +134,7 @@ def bingham_start(thickness, angle, density, yield_stress, viscosity, shear_modu
 
 def bingham_slab(r):
     rows = []
-    for degrees, cells in [(12, 9), (20, 9), (12, 6)]:
+    for degrees, cells in [(5, 10), (12, 6), (12, 10), (12, 15), (20, 10)]:
         scene, angle = r.scene(), np.radians(degrees)
         mud = scene["materials"]["mud"]
         thickness = 1.5 * mud["cohesion"] / (mud["density"] * G * np.sin(angle))
