@@ -138,6 +138,8 @@ def bingham_slab(r):
         scene, angle = r.scene(), np.radians(degrees)
         mud = scene["materials"]["mud"]
         thickness = 1.5 * mud["cohesion"] / (mud["density"] * G * np.sin(angle))
+        # As stiff beside its weight as the scene's own: what a softer one is relieved of at its ends reaches the middle.
+        mud["youngs_modulus"] *= max(1.0, thickness / scene["particles"][0]["high"][1])
         scene["grid"]["cell_size"] = thickness / cells
         box = scene["particles"][0]
         box.update(high=[160 / 3 * thickness, thickness], rotation=-degrees)
@@ -159,6 +161,34 @@ def bingham_slab(r):
             found = np.mean(v[top, 0] * np.cos(angle) - v[top, 1] * np.sin(angle))
             rows.append((f"surface speed after {k} s, m/s, {degrees} deg, {cells} cells", found, wanted[k - 1], relative(found, wanted[k - 1]), 0.05))
         rows.append((f"change of the thickness in 4 s, {degrees} deg, {cells} cells", None, None, abs(tops[-1] / tops[0] - 1), 0.03))
+    return rows
+
+
+def bingham_drain(r):
+    """A slab of 2.5 times the thickness that stands, let go on a slope askew to the grid with both ends open: what is
+    left when it has come to a stand, in its middle half, over that thickness, which is tau_y / (rho g sin b)."""
+    rows = []
+    for degrees, cells, end in [(12, 5, 24.0), (12, 10, 18.0), (5, 10, 40.0)]:
+        scene, angle = r.scene(), math.radians(degrees)
+        mud, box = scene["materials"]["mud"], scene["particles"][0]
+        standing = mud["cohesion"] / (mud["density"] * G * math.sin(angle))
+        mud["youngs_modulus"] *= max(1.0, 2.5 * standing / box["high"][1])
+        thickness, length = 2.5 * standing, 40.0 * standing
+        scene["grid"]["cell_size"] = standing / cells
+        scene["time"]["end"] = scene["output"]["frame_interval"] = end
+        box.update(high=[length, thickness], rotation=-degrees)
+        box["stress"].update(angle=degrees, surface_point=[thickness * math.sin(angle), thickness * math.cos(angle)])
+        scene["terrain"][0]["points"] = [[-1e3 * math.cos(angle), 1e3 * math.sin(angle)], [1e3 * math.cos(angle), -1e3 * math.sin(angle)]]
+        frame = r.run(scene, f"{degrees}_{cells}").frame()
+        along = frame["x"][:, 0] * math.cos(angle) - frame["x"][:, 1] * math.sin(angle)
+        for share in (0.25, 0.5, 0.75):
+            here = np.abs(along - share * length) < 3.0 * standing
+            left = frame["mass"][here].sum() / mud["density"] / (6.0 * standing)
+            speed = np.linalg.norm(frame["velocity"][here], axis=1).max()
+            print(f"     {degrees} deg, {cells} cells to the thickness that stands: {left / standing:.3f} of it left at {share} of the length"
+                  f" after {end:.0f} s, at most {speed:.3f} m/s")
+            rows.append((f"thickness left over what stands, {degrees} deg, {cells} cells, at {share} of the length", left / standing, 1.0,
+                         abs(left / standing - 1.0), 0.05))
     return rows
 
 

@@ -29,7 +29,7 @@ AGAINST = {"rigid_motion": "exact", "spinning_square": "exact", "vibrating_bar":
            "incline": "closed form", "incline_3d": "closed form",
            "mohr_coulomb_point": "bisection, 1e6 random trials", "strip_footing": "(2 + pi) c, Prandtl 1920",
            "vertical_cut": "3.83 c / gamma, Taylor 1937", "cohesive_block": "itself: time step, cell, energy",
-           "bingham_rest": "closed form, shallow limit", "bingham_slab": "one-dimensional solution", "bui_2008": "an independent MPM code; experiment, Bui et al. 2008",
+           "bingham_rest": "closed form, shallow limit", "bingham_slab": "one-dimensional solution", "bingham_drain": "closed form", "bui_2008": "an independent MPM code; experiment, Bui et al. 2008",
            "martin_moyce": "experiment, Martin & Moyce 1952; potential flow", "column_3d": "experiments, Lube et al. 2004",
            "contact_block": "the block on rigid ground, same cell",
            "contact_slab": "the slab on rigid ground along the grid, same cell", "contact_stack": "at rest",
