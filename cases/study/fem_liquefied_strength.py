@@ -5,7 +5,8 @@
         [--variants off floor both_1.5 ...] [--members 3] [--jobs 1] [--table]
 
 Variants: `off` (the case as it is), `floor` (residual_strength as in the case's transfer.json), `height_H`
-(softening/reference_height H m alone), `both_H` (both), `both_H_from_G` (and softening/from_shear_strain G). Members are the
+(softening/reference_height H m alone), `both_H` (both); with `_from_G` softening/from_shear_strain G, with `_strained_G` a floor that
+begins at a shear strain of G, not at an r_u. Members are the
 same run with the motion times 1, 1 + 1e-4, 1 - 1e-4, 1 + 2e-4 ... Each run takes one thread; what is there already is not
 run again. --table prints means and standard deviations of all that is there, as Markdown.
 """
@@ -43,7 +44,10 @@ def changed(scene, variant, transfer):
         region = rule["when"]["region"]
         material = scene["materials"][scene["regions"][region]["material"]]
         if words[0] in ("floor", "both"):
-            material["residual_strength"] = rule["residual_strength"]
+            material["residual_strength"] = dict(rule["residual_strength"])
+            if "strained" in words:  # no r_u is above 2
+                material["residual_strength"]["trigger"] = {"excess_pore_pressure_ratio": 2.0,
+                                                            "shear_strain": float(words[words.index("strained") + 1])}
         if words[0] in ("height", "both"):
             material["softening"] = {"reference_height": float(words[1])}
             if "from" in words:
