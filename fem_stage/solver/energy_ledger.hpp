@@ -28,9 +28,13 @@ class EnergyRecorder {
  public:
   void before(const State& state, std::span<const double> load);
   void after(const Model& model, const State& state, const ElementForces& forces, const Newmark& newmark,
-             EnergyLedger& ledger) const;
+             EnergyLedger& ledger);
 
  private:
+  struct Terms {  // of one element: J, J, W
+    double skeleton, fluid, damping;
+  };
+  std::vector<Terms> terms_;
   std::vector<double> velocity_, stress_, pressure_, load_;
 };
 
