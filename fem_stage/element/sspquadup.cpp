@@ -26,45 +26,24 @@ Jacobian jacobian_at(const double x[4], const double y[4], double xi, double eta
   return j;
 }
 
-// Shape functions and their derivatives by xi and eta at one integration point.
-struct PressurePoint {
-  double n[4], by_xi[4], by_eta[4];
-  PressurePoint(double xi, double eta) {
-    for (int a = 0; a < 4; ++a) {
-      n[a] = 0.25 * (1.0 + xi_sign[a] * xi) * (1.0 + eta_sign[a] * eta);
-      by_xi[a] = 0.25 * xi_sign[a] * (1.0 + eta_sign[a] * eta);
-      by_eta[a] = 0.25 * eta_sign[a] * (1.0 + xi_sign[a] * xi);
-    }
-  }
-};
-
-std::vector<PressurePoint> pressure_quadrature(int points) {
-  if (points == 1) return {{0.0, 0.0}};
-  const double gauss = 1.0 / std::sqrt(3.0);
-  return {{-gauss, -gauss}, {-gauss, gauss}, {gauss, -gauss}, {gauss, gauss}};
-}
-
 // Adds one integration point's share of the pressure matrices.
-void add_pressure_point(const double x[4], const double y[4], const PressurePoint& point, double weight, double* mass,
+void add_pressure_point(const double x[4], const double y[4], double xi, double eta, double weight, double* mass,
                         double* gxx, double* gyy, double* gx, double* gy) {
-  Jacobian j{};
-  for (int a = 0; a < 4; ++a) {
-    j.xx += point.by_xi[a] * x[a];
-    j.xy += point.by_eta[a] * x[a];
-    j.yx += point.by_xi[a] * y[a];
-    j.yy += point.by_eta[a] * y[a];
-  }
+  const Jacobian j = jacobian_at(x, y, xi, eta);
   const double det = j.determinant(), w = weight * det;
-  double nx[4], ny[4];
+  double n[4], nx[4], ny[4];
   for (int a = 0; a < 4; ++a) {
-    nx[a] = (point.by_xi[a] * j.yy - point.by_eta[a] * j.yx) / det;
-    ny[a] = (-point.by_xi[a] * j.xy + point.by_eta[a] * j.xx) / det;
+    n[a] = 0.25 * (1.0 + xi_sign[a] * xi) * (1.0 + eta_sign[a] * eta);
+    const double by_xi = 0.25 * xi_sign[a] * (1.0 + eta_sign[a] * eta),
+                 by_eta = 0.25 * eta_sign[a] * (1.0 + xi_sign[a] * xi);
+    nx[a] = (by_xi * j.yy - by_eta * j.yx) / det;
+    ny[a] = (-by_xi * j.xy + by_eta * j.xx) / det;
   }
   for (int a = 0; a < 4; ++a) {
     gx[a] += w * nx[a];
     gy[a] += w * ny[a];
     for (int b = 0; b <= a; ++b) {
-      mass[lower(a, b)] += w * point.n[a] * point.n[b];
+      mass[lower(a, b)] += w * n[a] * n[b];
       gxx[lower(a, b)] += w * nx[a] * nx[b];
       gyy[lower(a, b)] += w * ny[a] * ny[b];
     }
@@ -95,20 +74,11 @@ SspQuadUp build_sspquadup(const Mesh& mesh, std::span<const double> displacement
   const std::size_t count = mesh.elements();
   SspQuadUp out;
   for (auto* array : {&out.dndx, &out.dndy, &out.gamma, &out.nodal_volume, &out.gradient_x, &out.gradient_y})
-    array->resize(4 * count);
-  for (auto* array : {&out.mass_matrix, &out.gradient_xx, &out.gradient_yy}) array->resize(10 * count);
-  out.hourglass.resize(3 * count);
-  out.volume.resize(count);
-  out.size.resize(count);
-  move_sspquadup(mesh, displacement, thickness, shape, pressure_points, out);
-  return out;
-}
-
-void move_sspquadup(const Mesh& mesh, std::span<const double> displacement, std::span<const double> thickness,
-                    HourglassShape shape, int pressure_points, SspQuadUp& out) {
-  const std::size_t count = mesh.elements();
-  const std::vector<PressurePoint> quadrature = pressure_quadrature(pressure_points);
-  const double weight = 4.0 / static_cast<double>(quadrature.size());
+    array->assign(4 * count, 0.0);
+  for (auto* array : {&out.mass_matrix, &out.gradient_xx, &out.gradient_yy}) array->assign(10 * count, 0.0);
+  out.hourglass.assign(3 * count, 0.0);
+  out.volume.assign(count, 0.0);
+  out.size.assign(count, 0.0);
 #pragma omp parallel for schedule(static)
   for (std::size_t e = 0; e < count; ++e) {
     double x[4], y[4];
@@ -143,10 +113,15 @@ void move_sspquadup(const Mesh& mesh, std::span<const double> displacement, std:
 
     double *mass = &out.mass_matrix[10 * e], *gxx = &out.gradient_xx[10 * e], *gyy = &out.gradient_yy[10 * e];
     double *gx = &out.gradient_x[4 * e], *gy = &out.gradient_y[4 * e];
-    for (double* array : {mass, gxx, gyy}) std::fill_n(array, 10, 0.0);
-    for (double* array : {gx, gy}) std::fill_n(array, 4, 0.0);
-    for (const PressurePoint& point : quadrature) add_pressure_point(x, y, point, weight * t, mass, gxx, gyy, gx, gy);
+    if (pressure_points == 1) {
+      add_pressure_point(x, y, 0.0, 0.0, 4.0 * t, mass, gxx, gyy, gx, gy);
+    } else {
+      const double gauss = 1.0 / std::sqrt(3.0);
+      for (const double xi : {-gauss, gauss})
+        for (const double eta : {-gauss, gauss}) add_pressure_point(x, y, xi, eta, t, mass, gxx, gyy, gx, gy);
+    }
   }
+  return out;
 }
 
 void sspquadup_stiffness(const SspQuadUp& elements, std::size_t e, double bulk, double shear, double shear_hourglass,

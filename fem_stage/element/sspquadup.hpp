@@ -40,9 +40,6 @@ struct SspQuadUp {
 // pressure matrices at the centre (OpenSees; has a checkerboard null space), 2 with 2 x 2 Gauss points.
 SspQuadUp build_sspquadup(const Mesh& mesh, std::span<const double> displacement, std::span<const double> thickness,
                           HourglassShape shape, int pressure_points);
-// The same into `elements`, which such a call has made for this mesh.
-void move_sspquadup(const Mesh& mesh, std::span<const double> displacement, std::span<const double> thickness,
-                    HourglassShape shape, int pressure_points, SspQuadUp& elements);
 
 // What the element's one point sees of a nodal vector field: its gradient's symmetric part (xy doubled) and the
 // hourglass modes. `field` is (N, 2); a displacement gives strains, a velocity their rates.

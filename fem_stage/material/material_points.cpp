@@ -193,11 +193,7 @@ UpdateReport MaterialPoints::update(std::span<const double> strain_increment, st
 }
 
 void MaterialPoints::commit() {
-#pragma omp parallel if (size() > update_block)
-  groups_->for_each_group([](auto& group) {
-#pragma omp for schedule(static) nowait
-    for (std::size_t i = 0; i < group.points.size(); ++i) group.store.commit(i);
-  });
+  groups_->for_each([](auto& model, std::size_t i, std::size_t) { model.commit(i); });
 }
 
 void MaterialPoints::committed_stress(std::span<double> effective_stress) const {

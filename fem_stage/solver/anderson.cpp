@@ -12,15 +12,7 @@ Anderson::Anderson(std::size_t unknowns, int depth, std::vector<double> weights)
       last_correction_(unknowns),
       last_step_(unknowns),
       correction_changes_(depth_, std::vector<double>(unknowns)),
-      step_and_changes_(depth_, std::vector<double>(unknowns)),
-      gram_(depth_ * depth_) {}
-
-double Anderson::product(const std::vector<double>& a, std::span<const double> b) const {
-  double sum = 0.0;
-#pragma omp simd reduction(+ : sum)
-  for (std::size_t i = 0; i < n_; ++i) sum += weights_[i] * a[i] * b[i];
-  return sum;
-}
+      step_and_changes_(depth_, std::vector<double>(unknowns)) {}
 
 void Anderson::restart() {
   first_ = true;
@@ -36,10 +28,8 @@ void Anderson::accelerate(std::span<double> correction) {
       dd[i] = correction[i] - last_correction_[i];
       ds[i] = last_step_[i] + dd[i];
     }
-    stored_ = std::min(stored_ + 1, depth_);
-    for (std::size_t k = 0; k < stored_; ++k)
-      gram_[depth_ * std::max(k, next_) + std::min(k, next_)] = product(correction_changes_[k], dd);
     next_ = (next_ + 1) % depth_;
+    stored_ = std::min(stored_ + 1, depth_);
   }
   first_ = false;
   std::copy(correction.begin(), correction.end(), last_correction_.begin());
@@ -47,11 +37,17 @@ void Anderson::accelerate(std::span<double> correction) {
     const auto m = static_cast<Eigen::Index>(stored_);
     Eigen::MatrixXd gram(m, m);
     Eigen::VectorXd right(m);
-    for (std::size_t a = 0; a < stored_; ++a) {
-      right(static_cast<Eigen::Index>(a)) = product(correction_changes_[a], correction);
-      for (std::size_t b = 0; b <= a; ++b)
-        gram(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) =
-            gram(static_cast<Eigen::Index>(b), static_cast<Eigen::Index>(a)) = gram_[depth_ * a + b];
+    for (Eigen::Index a = 0; a < m; ++a) {
+      const auto& da = correction_changes_[static_cast<std::size_t>(a)];
+      double r = 0.0;
+      for (std::size_t i = 0; i < n_; ++i) r += weights_[i] * da[i] * correction[i];
+      right(a) = r;
+      for (Eigen::Index b = 0; b <= a; ++b) {
+        const auto& db = correction_changes_[static_cast<std::size_t>(b)];
+        double g = 0.0;
+        for (std::size_t i = 0; i < n_; ++i) g += weights_[i] * da[i] * db[i];
+        gram(a, b) = gram(b, a) = g;
+      }
     }
     gram.diagonal() *= 1.0 + 1e-10;  // nearly parallel changes must not blow the combination up
     const Eigen::VectorXd share = gram.ldlt().solve(right);

@@ -16,14 +16,11 @@ class Anderson {
   void accelerate(std::span<double> correction);
 
  private:
-  double product(const std::vector<double>& a, std::span<const double> b) const;  // in the weights
-
   std::size_t n_;
   std::size_t depth_;
   std::vector<double> weights_;
   std::vector<double> last_correction_, last_step_;
   std::vector<std::vector<double>> correction_changes_, step_and_changes_;
-  std::vector<double> gram_;  // (depth, depth), lower triangle: weighted products of the changes
   std::size_t stored_ = 0, next_ = 0;
   bool first_ = true;
 };

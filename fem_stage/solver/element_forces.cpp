@@ -12,12 +12,12 @@
 namespace tailrun::fem {
 namespace {
 
-// Tensor components (xx, yy, tensor shear) turned by half the angle of cosine `c` and sine `s`.
+// Tensor components (xx, yy, tensor shear) turned by the angle `r` (rad).
 struct Plane {
   double xx, yy, xy;
 };
-Plane turned(Plane t, double c, double s) {
-  const double mean = 0.5 * (t.xx + t.yy), half = 0.5 * (t.xx - t.yy);
+Plane turned(Plane t, double r) {
+  const double c = std::cos(2.0 * r), s = std::sin(2.0 * r), mean = 0.5 * (t.xx + t.yy), half = 0.5 * (t.xx - t.yy);
   return {mean + half * c - t.xy * s, mean - half * c + t.xy * s, half * s + t.xy * c};
 }
 
@@ -39,8 +39,6 @@ ElementForces::ElementForces(const Model& model, double damping, bool large_disp
   element_forces_.assign(12 * count, 0.0);
   if (large_) {
     rotation_.assign(count, 0.0);
-    twice_.assign(2 * count, 0.0);
-    for (std::size_t e = 0; e < count; ++e) twice_[2 * e] = 1.0;
     material_strain_.assign(3 * count, 0.0);
     moved_ = model.elements;
   }
@@ -71,7 +69,7 @@ UpdateReport ElementForces::evaluate(MaterialPoints& points, std::span<const dou
     strain_[3 * e + 1] = eyy;
     strain_[3 * e + 2] = gxy;
     if (large_) {
-      const Plane local = turned({exx, eyy, 0.5 * gxy}, twice_[2 * e], -twice_[2 * e + 1]);
+      const Plane local = turned({exx, eyy, 0.5 * gxy}, -rotation_[e]);
       material_strain_[3 * e] = local.xx;
       material_strain_[3 * e + 1] = local.yy;
       material_strain_[3 * e + 2] = 2.0 * local.xy;
@@ -96,7 +94,7 @@ UpdateReport ElementForces::evaluate(MaterialPoints& points, std::span<const dou
   for (std::size_t e = 0; e < count; ++e) {
     double sxx = stress_[4 * e], syy = stress_[4 * e + 1], sxy = stress_[4 * e + 3];
     if (large_) {
-      const Plane turned_stress = turned({sxx, syy, sxy}, twice_[2 * e], twice_[2 * e + 1]);
+      const Plane turned_stress = turned({sxx, syy, sxy}, rotation_[e]);
       sxx = turned_stress.xx;
       syy = turned_stress.yy;
       sxy = turned_stress.xy;
@@ -203,13 +201,8 @@ void ElementForces::commit(MaterialPoints& points, State& state, std::span<const
 
 void ElementForces::move_to(std::span<const double> displacement) {
   geometry_.assign(displacement.begin(), displacement.end());
-  move_sspquadup(model_.mesh, geometry_, model_.thickness, model_.options->hourglass_shape,
-                 model_.options->pressure_points, moved_);
-#pragma omp parallel for schedule(static)
-  for (std::size_t e = 0; e < model_.count(); ++e) {
-    twice_[2 * e] = std::cos(2.0 * rotation_[e]);
-    twice_[2 * e + 1] = std::sin(2.0 * rotation_[e]);
-  }
+  moved_ = build_sspquadup(model_.mesh, geometry_, model_.thickness, model_.options->hourglass_shape,
+                           model_.options->pressure_points);
 }
 
 void ElementForces::use_matrix_basis(const MatrixBasis& basis) {

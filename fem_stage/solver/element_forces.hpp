@@ -84,7 +84,6 @@ class ElementForces {
   std::vector<double> mobility_;  // 1, (M): share of the permeability, below 1 in a soft fluid under suction
   std::vector<double> geometry_;  // m, (N, 2): displacement of moved_
   std::vector<double> rotation_;  // rad, (M), only with large displacement
-  std::vector<double> twice_;     // cosine and sine of twice that, (M, 2)
   std::vector<double> strain_, material_strain_, stress_, global_stress_, element_forces_;
   double material_seconds_ = 0.0;
 };

@@ -26,7 +26,7 @@ void EnergyRecorder::before(const State& state, std::span<const double> load) {
 }
 
 void EnergyRecorder::after(const Model& model, const State& state, const ElementForces& forces, const Newmark& newmark,
-                           EnergyLedger& ledger) {
+                           EnergyLedger& ledger) const {
   const auto increment = newmark.last_increment();
   const auto load = newmark.last_load();
   double external = 0.0, kinetic = 0.0;
@@ -42,22 +42,16 @@ void EnergyRecorder::after(const Model& model, const State& state, const Element
     ledger.dashpot_work += dashpot.coefficient * 0.5 * (velocity_[i] + state.velocity[i]) * increment[i];
   }
   const auto strain = forces.strain_increment();
-  terms_.resize(model.count());
-#pragma omp parallel for schedule(static)
+  double skeleton = 0.0, fluid = 0.0, damping = 0.0;
   for (std::size_t e = 0; e < model.count(); ++e) {
     const double volume = forces.elements().volume[e], *d = &strain[3 * e], *s0 = &stress_[4 * e],
                  *s1 = &state.stress[4 * e];
+    skeleton += 0.5 * volume * ((s0[0] + s1[0]) * d[0] + (s0[1] + s1[1]) * d[1] + (s0[3] + s1[3]) * d[2]);
     const double before = element_mean(model.mesh.quads, pressure_, e);
     const double now = element_mean(model.mesh.quads, state.pressure, e);
     const double p = 0.5 * (model.pressure_in_stress(e, before) + model.pressure_in_stress(e, now));
-    terms_[e] = {0.5 * volume * ((s0[0] + s1[0]) * d[0] + (s0[1] + s1[1]) * d[1] + (s0[3] + s1[3]) * d[2]),
-                 volume * p * (d[0] + d[1]), forces.damping_power(e, state.velocity)};
-  }
-  double skeleton = 0.0, fluid = 0.0, damping = 0.0;
-  for (const Terms& term : terms_) {
-    skeleton += term.skeleton;
-    fluid -= term.fluid;
-    damping += term.damping;
+    fluid -= volume * p * (d[0] + d[1]);
+    damping += forces.damping_power(e, state.velocity);
   }
   ledger.skeleton_work += skeleton;
   ledger.fluid_work += fluid;

@@ -28,13 +28,9 @@ class EnergyRecorder {
  public:
   void before(const State& state, std::span<const double> load);
   void after(const Model& model, const State& state, const ElementForces& forces, const Newmark& newmark,
-             EnergyLedger& ledger);
+             EnergyLedger& ledger) const;
 
  private:
-  struct Terms {  // of one element: J, J, W
-    double skeleton, fluid, damping;
-  };
-  std::vector<Terms> terms_;
   std::vector<double> velocity_, stress_, pressure_, load_;
 };
 

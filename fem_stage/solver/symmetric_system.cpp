@@ -1,13 +1,15 @@
 #include "fem_stage/solver/symmetric_system.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tailrun::fem {
 
 SymmetricSystem::SymmetricSystem(int equations, std::vector<int> element_equations, int local_size)
     : equations_(equations), local_size_(local_size), element_equations_(std::move(element_equations)) {
   cholmod_start(&common_);
-  common_.supernodal = CHOLMOD_SUPERNODAL;  // the analysis alone: its factor would be L L^T
+  common_.supernodal = CHOLMOD_SIMPLICIAL;  // L D L^T, which an indefinite matrix needs
+  common_.final_ll = 0;
   common_.print = 0;
 
   // Pattern of the lower triangle, column by column.
@@ -46,12 +48,14 @@ SymmetricSystem::SymmetricSystem(int equations, std::vector<int> element_equatio
         slot_[k * (k * e + a) + b] = static_cast<int>(std::lower_bound(row + start[j], row + start[j + 1], i) - row);
       }
   clear();
-  cholmod_factor* analysis = cholmod_analyze(matrix_, &common_);
-  factor_ = std::make_unique<BlockFactor>(*analysis, std::span(start, n + 1), std::span(row, entries));
-  cholmod_free_factor(&analysis, &common_);
+  factor_ = cholmod_analyze(matrix_, &common_);
 }
 
 SymmetricSystem::~SymmetricSystem() {
+  cholmod_free_dense(&x_, &common_);
+  cholmod_free_dense(&y_, &common_);
+  cholmod_free_dense(&e_, &common_);
+  cholmod_free_factor(&factor_, &common_);
   cholmod_free_sparse(&matrix_, &common_);
   cholmod_finish(&common_);
 }
@@ -81,17 +85,33 @@ std::vector<double> SymmetricSystem::diagonal() const {
 
 void SymmetricSystem::factorise() {
   ++factorisations_;
-  const int singular = factor_->factorise(std::span(static_cast<const double*>(matrix_->x), matrix_->nzmax));
-  if (singular >= 0) throw SingularSystem(singular);
+  cholmod_factorize(matrix_, factor_, &common_);
+  const int* order = static_cast<int*>(factor_->Perm);
+  if (factor_->minor < factor_->n) throw SingularSystem(order[factor_->minor]);
+  // Rounding hides an exact zero: a pivot that lost (nearly) all digits of its diagonal entry is as good as none.
+  const double *values = static_cast<double*>(matrix_->x), *factor = static_cast<double*>(factor_->x);
+  const int* start = static_cast<int*>(factor_->p);
+  for (std::size_t j = 0; j < factor_->n; ++j) {
+    const double pivot = factor[start[j]];
+    const double entry = values[diagonal_slot_[static_cast<std::size_t>(order[j])]];
+    if (!(std::abs(pivot) > 1e-14 * std::abs(entry))) throw SingularSystem(order[j]);
+  }
 }
 
 void SymmetricSystem::solve(std::span<const double> right, std::span<double> x) {
   ++solves_;
-  factor_->solve(right, x);
+  cholmod_dense b{};
+  b.nrow = b.d = b.nzmax = static_cast<std::size_t>(equations_);
+  b.ncol = 1;
+  b.x = const_cast<double*>(right.data());  // read only; the library's type has no const
+  b.xtype = CHOLMOD_REAL;
+  b.dtype = CHOLMOD_DOUBLE;
+  cholmod_solve2(CHOLMOD_A, factor_, &b, nullptr, &x_, nullptr, &y_, &e_, &common_);
+  std::copy_n(static_cast<double*>(x_->x), equations_, x.data());
 }
 
 double SymmetricSystem::factor_entries() const {
-  return factor_->entries();
+  return common_.lnz;
 }
 
 }  // namespace tailrun::fem

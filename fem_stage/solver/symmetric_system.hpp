@@ -1,6 +1,6 @@
-// A sparse symmetric system assembled from element matrices, factorised as L D L^T without pivoting: right for positive
-// definite and for quasi-definite matrices [A, -Q; -Q^T, -D] (Vanderbei 1995), which the u-p problem gives. The pattern
-// and its symbolic analysis (CHOLMOD's) are made once.
+// A sparse symmetric system assembled from element matrices, factorised as L D L^T by CHOLMOD without pivoting: right
+// for positive definite and for quasi-definite matrices [A, -Q; -Q^T, -D] (Vanderbei 1995), which the u-p problem
+// gives. The pattern and its symbolic analysis are made once.
 #pragma once
 
 #include <cholmod.h>
@@ -9,8 +9,6 @@
 #include <span>
 #include <stdexcept>
 #include <vector>
-
-#include "fem_stage/solver/block_factor.hpp"
 
 namespace tailrun::fem {
 
@@ -46,7 +44,8 @@ class SymmetricSystem {
   std::vector<int> diagonal_slot_;  // (equations)
   cholmod_common common_;
   cholmod_sparse* matrix_ = nullptr;
-  std::unique_ptr<BlockFactor> factor_;
+  cholmod_factor* factor_ = nullptr;
+  cholmod_dense *x_ = nullptr, *y_ = nullptr, *e_ = nullptr;
   long factorisations_ = 0, solves_ = 0;
 };
 

@@ -1,7 +1,6 @@
-// The implicit step's system by three sparse solvers: L D L^T without pivoting in dense blocks, which the program uses
-// because the matrix is quasi-definite; CHOLMOD's, column by column; and UMFPACK's LU with pivoting, without iterative
-// refinement (IRSTEP = 0). Numeric factorisation and one solution, processor time of one thread, on the matrix that
-// shaking begins with.
+// The implicit step's system by two sparse solvers: CHOLMOD's L D L^T without pivoting, which the program uses because
+// the matrix is quasi-definite, and UMFPACK's LU with pivoting, without iterative refinement (IRSTEP = 0). Numeric
+// factorisation and one solution, processor time of one thread, on the matrix that shaking begins with.
 //
 //   bench_linear_solver --benchmark_format=json fem.json coarse default fine
 //
@@ -13,7 +12,6 @@
 #include <spdlog/spdlog.h>
 #include <umfpack.h>
 
-#include <Eigen/CholmodSupport>
 #include <Eigen/SparseCore>
 #include <cmath>
 #include <filesystem>
@@ -122,24 +120,11 @@ void add_benchmarks(const std::string& size, const std::shared_ptr<Systems>& sys
   const auto add = [&](const std::string& name, auto body) {
     benchmark::RegisterBenchmark((size + "/" + name).c_str(), body)->Unit(benchmark::kMillisecond);
   };
-  using Cholmod = Eigen::CholmodSimplicialLDLT<Eigen::SparseMatrix<double, Eigen::ColMajor, int>>;
   add("cholmod_ldlt/factorise", [systems](benchmark::State& run) {
-    Cholmod solver;
-    solver.analyzePattern(systems->full);
-    for (auto _ : run) solver.factorize(systems->full);
-    count(run, *systems, solver.cholmod().lnz, {});
-  });
-  add("cholmod_ldlt/solve", [systems](benchmark::State& run) {
-    Cholmod solver(systems->full);
-    Vector x;
-    for (auto _ : run) x = solver.solve(systems->right);
-    count(run, *systems, solver.cholmod().lnz, x);
-  });
-  add("blocks/factorise", [systems](benchmark::State& run) {
     for (auto _ : run) systems->symmetric->factorise();
     count(run, *systems, systems->symmetric->factor_entries(), {});
   });
-  add("blocks/solve", [systems](benchmark::State& run) {
+  add("cholmod_ldlt/solve", [systems](benchmark::State& run) {
     Vector x(systems->right.size());
     systems->symmetric->factorise();
     for (auto _ : run)
