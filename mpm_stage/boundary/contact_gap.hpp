@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "mpm_stage/boundary/contact_nodes.hpp"
-#include "mpm_stage/boundary/soil_limit.hpp"
+#include "mpm_stage/material/soil_limit.hpp"
 
 namespace tailrun::mpm {
 

@@ -20,8 +20,8 @@
 
 #include "mpm_stage/boundary/field_friction.hpp"
 #include "mpm_stage/boundary/half_spaces.hpp"
-#include "mpm_stage/boundary/soil_limit.hpp"
 #include "mpm_stage/grid/field_choice.hpp"
+#include "mpm_stage/material/soil_limit.hpp"
 #include "mpm_stage/transfer/interface_sums.hpp"
 
 namespace tailrun::mpm {

@@ -8,8 +8,8 @@
 #include <cstdint>
 
 #include "mpm_stage/boundary/friction_pool.hpp"
-#include "mpm_stage/boundary/soil_limit.hpp"
 #include "mpm_stage/grid/field_choice.hpp"
+#include "mpm_stage/material/soil_limit.hpp"
 
 namespace tailrun::mpm {
 

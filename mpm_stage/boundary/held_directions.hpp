@@ -7,7 +7,7 @@
 
 #include "mpm_stage/boundary/contact_nodes.hpp"
 #include "mpm_stage/boundary/ground_friction.hpp"
-#include "mpm_stage/step/grid_update.hpp"
+#include "mpm_stage/boundary/wall_nodes.hpp"
 
 namespace tailrun::mpm {
 

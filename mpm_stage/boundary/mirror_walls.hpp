@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "mpm_stage/boundary/wall_nodes.hpp"
 #include "mpm_stage/grid/block_grid.hpp"
 #include "mpm_stage/grid/simd.hpp"
-#include "mpm_stage/step/grid_update.hpp"
 
 namespace tailrun::mpm {
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "mpm_stage/grid/field_choice.hpp"
-#include "mpm_stage/scene/particles.hpp"
+#include "mpm_stage/particles/particles.hpp"
 
 namespace tailrun::mpm {
 

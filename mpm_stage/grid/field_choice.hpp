@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "mpm_stage/scene/particles.hpp"
+#include "mpm_stage/particles/particles.hpp"
 
 namespace tailrun::mpm {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "mpm_stage/material/material.hpp"
-#include "mpm_stage/scene/particles.hpp"
+#include "mpm_stage/particles/particles.hpp"
 
 namespace tailrun::mpm {
 

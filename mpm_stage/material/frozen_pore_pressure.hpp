@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "mpm_stage/material/material.hpp"
-#include "mpm_stage/scene/particles.hpp"
+#include "mpm_stage/particles/particles.hpp"
 
 namespace tailrun::mpm {
 

@@ -6,7 +6,7 @@
 
 #include "mpm_stage/grid/simd.hpp"
 #include "mpm_stage/material/material.hpp"
-#include "mpm_stage/scene/particles.hpp"
+#include "mpm_stage/particles/particles.hpp"
 
 namespace tailrun::mpm {
 

@@ -10,7 +10,7 @@
 #include "common/case_settings.hpp"
 #include "common/provenance.hpp"
 #include "common/warnings.hpp"
-#include "mpm_stage/boundary/soil_limit.hpp"
+#include "mpm_stage/material/soil_limit.hpp"
 
 namespace tailrun::mpm {
 

@@ -13,7 +13,7 @@
 #include "mpm_stage/boundary/walls.hpp"
 #include "mpm_stage/grid/block_grid.hpp"
 #include "mpm_stage/material/material.hpp"
-#include "mpm_stage/scene/particles.hpp"
+#include "mpm_stage/particles/particles.hpp"
 
 namespace tailrun::mpm {
 

@@ -11,11 +11,11 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "mpm_stage/boundary/soil_limit.hpp"
 #include "mpm_stage/grid/block_grid.hpp"
 #include "mpm_stage/grid/shape_functions.hpp"
 #include "mpm_stage/grid/simd.hpp"
-#include "mpm_stage/scene/particles.hpp"
+#include "mpm_stage/material/soil_limit.hpp"
+#include "mpm_stage/particles/particles.hpp"
 
 namespace tailrun::mpm {
 

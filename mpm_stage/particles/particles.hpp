@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "mpm_stage/grid/aligned.hpp"
+#include "mpm_stage/particles/aligned.hpp"
 
 namespace tailrun::mpm {
 
