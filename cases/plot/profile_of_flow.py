@@ -26,6 +26,7 @@ class Flow:
     depth: np.ndarray  # m
     width: float  # m
     released_volume: float  # m3 per metre of dam
+    moved_mass: float  # kg per metre of dam: of soil farther than flow_distance from where it was before the motion (released: at the hand-over)
     since: float  # s since the start of the motion at which the runout begins
 
 
@@ -69,6 +70,7 @@ def of_particles(first, last, flow_distance=FLOW_DISTANCE):
     motion."""
     width = column_width(first.size)
     moved = last.data["displacement"][:, :2].copy()
+    since_before = np.hypot(moved[:, 0], moved[:, 1]) > flow_distance
     if len(first.position) == len(last.position):
         moved -= first.data["displacement"][:, :2]
     flowed = np.hypot(moved[:, 0], moved[:, 1]) > flow_distance
@@ -80,7 +82,7 @@ def of_particles(first, last, flow_distance=FLOW_DISTANCE):
     depth = shared_out(last.position[flowed, 0] / width - begin, volume[flowed], half / width, count) / width
     x = (begin + np.arange(count) + 0.5) * width
     return Flow(x, highest(edge[0] - begin, first.position[:, 1] + half, count), highest(edge[1] - begin, last.position[:, 1] + half, count),
-                ground(last.terrain, x), depth, width, float(volume[flowed].sum()), first.time)
+                ground(last.terrain, x), depth, width, float(volume[flowed].sum()), float(last.data["mass"][since_before].sum()), first.time)
 
 
 def of_frames(folder, flow_distance=FLOW_DISTANCE):

@@ -11,6 +11,7 @@
     "motion": { "key": "fem:/shake/motion", "folder": "motion", "pattern": "*.AT2" }
   },
   "correlations": [ { "between": ["factor", "strengths"], "rank": 0.5 } ]      Spearman's rank correlation
+  "curves": { "over": "time", "axis": "time of the hand-over (s)", "chance": ["motion_scale"], "numbers": ["runout_m"] }      a grid's picture (curves.py)
 }
 docs/what_if.md says more.
 """
@@ -25,6 +26,7 @@ import numpy as np
 import paths  # noqa: F401
 import settings as what_if
 from case_part import read_case
+from curves import read_curves
 from distributions import Distribution, rounded
 from json_keys import DesignError, Keys, near
 from sample import copula, sample
@@ -42,6 +44,7 @@ class Parameter:
     distribution: Distribution = None
     choices: list = None
     scales: bool = False  # the value multiplies what the case file says
+    labels: list = None  # what tables and pictures call the choices
 
     @property
     def numeric(self):
@@ -67,6 +70,7 @@ class Design:
     members: list  # {parameter: value}, in order
     steps: list = field(default_factory=list)  # steps.Step; the parameter "step" is the name of one
     reference: dict = None  # what the steps lead to
+    curves: dict = None  # over which parameter numbers are drawn (curves.py)
 
 
 MISSPELT = 0.7  # of difflib: a key so much like one that is there is not a key of its own
@@ -137,6 +141,10 @@ def read_parameter(keys, name, case_dir, contents):
             keys.refuse("values", parameter.choices, "a list of values that are all different")
     else:
         parameter.choices = files_of(keys, case_dir)
+    parameter.labels = keys.value("labels")
+    if parameter.labels is not None and not (isinstance(parameter.labels, list) and all(isinstance(label, str) for label in parameter.labels)
+                                             and len(set(parameter.labels)) == len(parameter.labels) == len(parameter.choices or [])):
+        keys.refuse("labels", parameter.labels, "a list with a text of its own for each of the values")
     parameter.scales = keys.value("scales", False)
     if not isinstance(parameter.scales, bool):
         keys.refuse("scales", parameter.scales, "true or false")
@@ -247,9 +255,10 @@ def design_of(content, path, case_dir, contents):
                 raise DesignError(f"{path}: /parameters: {word} is varied, and set by the step '{step.name}'")
     batches = batches_of(keys, kind)
     correlations = rank_correlations(keys, parameters)
+    curves = read_curves(keys, parameters, kind)
     keys.finish()
     members = members_of(kind, batches, seed, parameters, correlations, keys)
-    return Design(title, kind, batches, seed, parameters, members, steps, reference)
+    return Design(title, kind, batches, seed, parameters, members, steps, reference, curves)
 
 
 def scaled(value, factor):
@@ -264,6 +273,8 @@ def settings_of(design, member, contents):
         for word in parameter.keys:
             stage, _, pointer = word.partition(":")
             value = member[parameter.name]
+            if value is None:  # what the case file says, or does not say, stays
+                continue
             if parameter.scales:
                 value = scaled(at_pointer(contents[stage], pointer), value)
             found.setdefault(stage, []).append(f"{pointer}={json.dumps(value)}")

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 import paths  # noqa: F401
+import curve_figures
 import html_page as page
 import members_table as members
 import sweep_figures
@@ -34,6 +35,20 @@ def failures(table):
     return [(numbers, *what) for what, numbers in found.items()]
 
 
+class Sampled:
+    """How most designs are told: over all members."""
+
+    statistics, draw, csv = staticmethod(statistics), staticmethod(sweep_figures.draw), None
+
+
+class Steps:
+    statistics, draw, csv = staticmethod(waterfall.statistics), staticmethod(waterfall.draw), ("steps.csv", waterfall.write_csv)
+
+
+class Curves:
+    statistics, draw, csv = staticmethod(curve_figures.statistics), staticmethod(curve_figures.draw), ("curves.csv", curve_figures.write_csv)
+
+
 def gather(folder):
     """Writes all of it. Exit status 0 when every member is there, 2 when some are not."""
     folder = Path(folder)
@@ -44,11 +59,11 @@ def gather(folder):
     members.write_failures(folder / "failed.csv", table)
     for old in folder.glob("*.png"):
         old.unlink()
-    by_steps = table.plan["design"] == "steps"
-    made = (waterfall if by_steps else sweep_figures).draw(table, folder) if done else []
-    if by_steps:
-        waterfall.write_csv(folder / "steps.csv", table)
-    header, rows = (waterfall.statistics if by_steps else statistics)(table)
+    told_as = Steps if table.plan["design"] == "steps" else Curves if table.plan.get("curves") else Sampled
+    made = told_as.draw(table, folder) if done else []
+    if told_as.csv:
+        told_as.csv[1](folder / told_as.csv[0], table)
+    header, rows = told_as.statistics(table)
     told = [f"member {', '.join(map(str, numbers))}: {stage}: {reason} (all that it said: {log})" for numbers, stage, reason, log in failures(table)]
     count = f"{done} of {len(table.state)} members done" + (f", {failed} failed" if failed else "") + (f", {missing} missing" if missing else "")
     moving = sum(content.get("stop_reason") == "end time" for content in table.content)
@@ -62,7 +77,7 @@ def gather(folder):
     widths = [max(len(row[k]) for row in [header, *rows]) for k in range(len(header))]
     for row in [header, *rows]:
         print("  " + "  ".join(f"{cell:{'<' if k < 1 else '>'}{widths[k]}}" for k, cell in enumerate(row)).rstrip())
-    for name in ("sweep.html", *(name for name, _ in made), *(["steps.csv"] if by_steps else []), "members.csv", "members.h5"):
+    for name in ("sweep.html", *(name for name, _ in made), *([told_as.csv[0]] if told_as.csv else []), "members.csv", "members.h5"):
         print(f"  {folder / name}")
     for text in end:
         print(f"  {text}")

@@ -8,8 +8,11 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 import paths  # noqa: F401
 import profile_of_flow as flow
+from chain_files import series
 from stage import read_json
 
 
@@ -34,8 +37,8 @@ class Headline:
         return self.shown or self.unit
 
 
-MEASURE = 1  # to be raised when a number or the profile is measured in another way: members of sweeps are then computed anew
-FEM, MPM, FLOW = "fem/summary.json", "mpm/summary.json", "flow"
+MEASURE = 2  # to be raised when a number or the profile is measured in another way: members of sweeps are then computed anew
+FEM, MPM, FLOW, HANDOVER = "fem/summary.json", "mpm/summary.json", "flow", "fem/quality.csv"
 HEADLINES = (
     Headline("runout_m", "runout", "m", ((MPM, "runout_m"),)),
     Headline("runout_of_body_m", "runout of the flow's body", "m", ((MPM, "runout_of_body_m"),)),
@@ -43,12 +46,14 @@ HEADLINES = (
     Headline("flow_front_m", "front of what flowed, x", "m", ((MPM, "flow_front_position_m"),)),
     Headline("released_volume_m3", "released volume", "m3", ((MPM, "flowed_volume_m3"), (FLOW, "released_volume_m3")), digits=0),
     Headline("flowed_mass_kg", "mass that flowed", "kg", ((MPM, "flowed_mass_kg"),), "t", 1e-3, 0),
+    Headline("moved_mass_kg", "mass moved since before the motion", "kg", ((FLOW, "moved_mass_kg"),), "t", 1e-3, 0),
     Headline("freeboard_lost_m", "freeboard lost", "m", ((MPM, "freeboard_lost_m"),), digits=2),
     Headline("largest_displacement_mpm_m", "largest displacement, runout", "m", ((MPM, "largest_displacement_m"),)),
     Headline("final_rms_speed_m_s", "speed at the end (root mean square)", "m/s", ((MPM, "final_rms_speed_m_s"),), digits=3),
     Headline("simulated_time_s", "time of runout simulated", "s", ((MPM, "simulated_time_s"),)),
     Headline("lost_energy_ratio", "energy lost by the scheme", "1", ((MPM, "energy/lost_ratio"),), "%", 100.0),
     Headline("largest_displacement_fem_m", "largest displacement, shaking", "m", ((FEM, "largest_displacement_m"),), digits=2),
+    Headline("displacement_at_handover_m", "largest displacement at the hand-over", "m", ((HANDOVER, "largest_displacement_m"),), digits=2),
     Headline("liquefied_depth_m", "liquefied depth", "m", ((FEM, "liquefied_depth_m"),)),
     Headline("mean_pore_pressure_ratio", "mean r_u of the tailings", "1", ((FEM, "mean_excess_pore_pressure_ratio"),), digits=3),
 )
@@ -75,10 +80,24 @@ def numbers(contents):
     return found
 
 
+def of_flow(measured):
+    """What the frames say (a Flow, None without), as numbers() reads it."""
+    return {"released_volume_m3": measured.released_volume, "moved_mass_kg": measured.moved_mass} if measured else {}
+
+
+def at_handover(quality, time):
+    """What the shaking's series (fem/quality.csv) says of the time of the hand-over (s), as numbers() reads it; empty without one, or where the
+    shaking ended before."""
+    rows = series(quality)
+    if rows is None or time is None or not rows["time_s"][0] <= time <= rows["time_s"][-1] + 1e-9:
+        return {}
+    return {name: float(np.interp(time, rows["time_s"], values)) for name, values in rows.items()}
+
+
 def of_run(root, fem=None):
     """Headline numbers of a run's folder (`fem`: where fem/ lies, if elsewhere), and its Flow (None without frames)."""
     root = Path(root)
     measured = flow.of_frames(root / "mpm")
-    contents = {MPM: read_json(root / MPM), FEM: read_json(Path(fem or root) / FEM),
-                FLOW: {"released_volume_m3": measured.released_volume} if measured else {}}
+    contents = {MPM: read_json(root / MPM), FEM: read_json(Path(fem or root) / FEM), FLOW: of_flow(measured),
+                HANDOVER: at_handover(Path(fem or root) / HANDOVER, measured.since if measured else None)}
     return numbers(contents), measured

@@ -10,6 +10,8 @@ environment goes to sbatch, RETRY=1 tries members again that have failed.
 """
 
 import argparse
+import hashlib
+import json
 import os
 import re
 import shlex
@@ -90,11 +92,19 @@ def write_rules(path, units, lines, command):
     path.write_text("\n".join(rules) + "\n")
 
 
+def input_of(base, members):
+    """SHA-256 of all that the members depend on but the size: sweeps of one case at two sizes are of one input when it is the same."""
+    records = [{key: value for key, value in base.record(name).items() if key not in ("size", "after", "key")} for name in base.names("mpm")]
+    return hashlib.sha256(json.dumps([records, [member.settings for member in members]], sort_keys=True).encode()).hexdigest()
+
+
 def write_plan(folder, design, members, arguments):
     write_json(folder / "plan.json", {
         "title": design.title, "case": str(arguments.case), "size": arguments.size, "time": arguments.time, "design": design.kind,
         "batches": design.batches, "seed": design.seed, "store": str(arguments.fem / "store"), "reference": design.reference,
-        "parameters": [{"name": p.name, "keys": p.keys, "base": p.base_value(), "scales": p.scales, "numeric": p.numeric} for p in design.parameters],
+        "curves": design.curves, "input": input_of(chain_of(arguments), members),
+        "parameters": [{"name": p.name, "keys": p.keys, "base": p.base_value(), "scales": p.scales, "numeric": p.numeric, "choices": p.choices,
+                        "labels": p.labels} for p in design.parameters],
         "members": [{"number": m.number, "values": m.values, "settings": m.settings, "keys": m.keys} for m in members]})
 
 

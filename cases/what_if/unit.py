@@ -80,12 +80,15 @@ def write_member(chain, root, work, store, donors):
     if chain.has("shake"):
         key = chain.record("shake")["key"]
         shaken = (folder for folder in (work, plan.folder_of(store, "shake", key), *donors) if results_of(folder, "shake", key))
-        contents[headline.FEM] = next((read_json(folder / headline.FEM) for folder in shaken), None)
+        folder = next(shaken, None)
+        if folder is not None:
+            contents[headline.FEM] = read_json(folder / headline.FEM)
+            contents[headline.HANDOVER] = headline.at_handover(folder / headline.HANDOVER, float(chain.transfer_time() or "nan"))
     output = chain.content("mpm").get("output", {})
     flow = profile_of_flow.of_frames(work / "mpm", output.get("flow_distance", profile_of_flow.FLOW_DISTANCE))
     if flow is not None:
         profile_of_flow.write(root / "profile.csv", flow)
-        contents[headline.FLOW] = {"released_volume_m3": flow.released_volume}
+        contents[headline.FLOW] = headline.of_flow(flow)
     if (work / "mpm" / "front.csv").exists():
         shutil.copyfile(work / "mpm" / "front.csv", root / "front.csv")
     summary = contents[headline.MPM] or {}
