@@ -77,10 +77,10 @@ def write_csv(path, table):
 
 def sizes(table, folder):
     """{size: Table} of this sweep and of the same one at other sizes, in the order of the case file."""
-    plan, folder = table.plan, Path(folder)
+    plan, folder = table.plan, Path(folder).absolute()
     found = {}
     for size in read_case(Path(plan["case"]) / "mpm.json").get("sizes") or [plan["size"]]:
-        other = folder_of_size(Path(plan["store"]).parent, folder.parents[1], plan["size"], size) / "sweeps" / folder.name
+        other = folder_of_size(Path(plan["store"]).absolute().parent, folder.parents[1], plan["size"], size) / "sweeps" / folder.name
         if size == plan["size"]:
             found[size] = table
         elif (read_json(other / "plan.json") or {}).get("input", "") == plan["input"]:
@@ -117,7 +117,7 @@ def draw(table, folder):
     for axis, headline in zip(axes.flat, headlines):
         panel(axis, tables, headline, curves["axis"])
     handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncol=min(len(labels), 4), fontsize=9)
+    figure.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=min(len(labels), 4), fontsize=9)
     figure.suptitle("mean and standard deviation over runs that differ in nothing physical; dots: the runs", fontsize=9)
     style.save(figure, Path(folder) / "curves.png")
     return [("curves.png", "Over " + curves["axis"])]
