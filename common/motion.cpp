@@ -18,6 +18,12 @@ std::vector<double> integral(const std::vector<double>& rate, double dt) {
   return sum;
 }
 
+std::vector<double> squares_of(const std::vector<double>& values) {
+  std::vector<double> squares(values.size());
+  std::transform(values.begin(), values.end(), squares.begin(), [](double a) { return a * a; });
+  return squares;
+}
+
 }  // namespace
 
 void Motion::integrate() {
@@ -57,22 +63,27 @@ double Motion::peak_velocity() const {
 }
 
 double Motion::arias_intensity() const {
-  std::vector<double> squares(acceleration.size());
-  std::transform(acceleration.begin(), acceleration.end(), squares.begin(), [](double a) { return a * a; });
-  const auto sum = integral(squares, time_step);
+  const auto sum = integral(squares_of(acceleration), time_step);
   return sum.empty() ? 0.0 : std::numbers::pi / (2.0 * standard_gravity) * sum.back();
 }
 
 std::pair<double, double> Motion::significant_duration(double from, double to) const {
-  std::vector<double> squares(acceleration.size());
-  std::transform(acceleration.begin(), acceleration.end(), squares.begin(), [](double a) { return a * a; });
-  const auto sum = integral(squares, time_step);
+  const auto sum = integral(squares_of(acceleration), time_step);
   if (sum.empty() || sum.back() <= 0.0) return {0.0, 0.0};
   const auto arrival = [&](double share) {
     const auto it = std::lower_bound(sum.begin(), sum.end(), share * sum.back());
     return time_step * static_cast<double>(it - sum.begin());
   };
   return {arrival(from), arrival(to)};
+}
+
+double Motion::arias_share_after(double t) const {
+  const auto sum = integral(squares_of(acceleration), time_step);
+  if (sum.empty() || sum.back() <= 0.0) return 0.0;
+  const double point = std::clamp(t / time_step, 0.0, static_cast<double>(sum.size() - 1));
+  const auto k = std::min(static_cast<std::size_t>(point), sum.size() - 1);
+  const double next = sum[std::min(k + 1, sum.size() - 1)];
+  return 1.0 - (sum[k] + (point - static_cast<double>(k)) * (next - sum[k])) / sum.back();
 }
 
 Motion scaled_to_peak(Motion motion, double peak) {

@@ -22,6 +22,7 @@ struct Motion {
   double arias_intensity() const;      // m/s
   // Times (s) between which the given share of the Arias intensity arrives, e.g. (0.05, 0.95).
   std::pair<double, double> significant_duration(double from, double to) const;
+  double arias_share_after(double t) const;  // 1, of the Arias intensity; 0 for a motion that is zero
 };
 
 // PEER AT2. The line with the count and the time step is found by its form ("NPTS=  1559, DT= .02000 SEC",

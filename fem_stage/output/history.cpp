@@ -98,10 +98,11 @@ void History::record(const State& state, const BaseMotion& base) {
 
 QualitySeries::QualitySeries(const Model& model, const std::filesystem::path& folder)
     : model_(model),
+      jacobians_before_(scaled_jacobians(model.mesh, {})),
       file_(folder / "quality.csv",
-            {"time_s", "largest_displacement_m", "smallest_scaled_jacobian", "inverted_elements", "liquefied_depth_m",
-             "mean_excess_pore_pressure_ratio", "liquefied_share", "steps", "iterations", "factorisations",
-             "material_substeps", "wall_s"}) {
+            {"time_s", "largest_displacement_m", "smallest_scaled_jacobian", "least_jacobian_kept", "inverted_elements",
+             "liquefied_depth_m", "mean_excess_pore_pressure_ratio", "liquefied_share", "steps", "iterations",
+             "factorisations", "material_substeps", "wall_s"}) {
   const auto& output = model.options->output;
   if (output.liquefaction_region.empty()) return;
   const auto it = std::find(model.mesh.region_names.begin(), model.mesh.region_names.end(), output.liquefaction_region);
@@ -128,6 +129,9 @@ void QualitySeries::record(const State& state, const SolverCounts& counts, doubl
         std::max(row.largest_displacement, std::hypot(state.displacement[2 * n], state.displacement[2 * n + 1]));
   const auto jacobians = scaled_jacobians(model_.mesh, state.displacement);
   row.smallest_jacobian = *std::min_element(jacobians.begin(), jacobians.end());
+  row.jacobian_kept = 1.0;
+  for (std::size_t e = 0; e < jacobians.size(); ++e)
+    row.jacobian_kept = std::min(row.jacobian_kept, jacobians[e] / jacobians_before_[e]);
   row.inverted = static_cast<int>(std::count_if(jacobians.begin(), jacobians.end(), [](double j) { return j <= 0.0; }));
   if (!window_.empty()) {
     const auto ratio = excess_pore_pressure_ratio(model_, state);
@@ -143,10 +147,10 @@ void QualitySeries::record(const State& state, const SolverCounts& counts, doubl
     row.liquefied_share = liquefied / area;
   }
   rows_.push_back(row);
-  file_.row({row.time, row.largest_displacement, row.smallest_jacobian, static_cast<double>(row.inverted),
-             row.liquefied_depth, row.mean_ratio, row.liquefied_share, static_cast<double>(counts.steps),
-             static_cast<double>(counts.iterations), static_cast<double>(counts.factorisations),
-             static_cast<double>(counts.material_substeps), wall_seconds});
+  file_.row({row.time, row.largest_displacement, row.smallest_jacobian, row.jacobian_kept,
+             static_cast<double>(row.inverted), row.liquefied_depth, row.mean_ratio, row.liquefied_share,
+             static_cast<double>(counts.steps), static_cast<double>(counts.iterations),
+             static_cast<double>(counts.factorisations), static_cast<double>(counts.material_substeps), wall_seconds});
 }
 
 }  // namespace tailrun::fem

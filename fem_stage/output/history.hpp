@@ -54,7 +54,9 @@ class History {
 };
 
 struct QualityRow {
-  double time, largest_displacement, smallest_jacobian, liquefied_depth, mean_ratio, liquefied_share;
+  double time, largest_displacement, smallest_jacobian;
+  double jacobian_kept;  // 1, least over the elements: scaled Jacobian now over that at the start
+  double liquefied_depth, mean_ratio, liquefied_share;
   int inverted;
 };
 
@@ -74,6 +76,7 @@ class QualitySeries {
   const Model& model_;
   std::vector<std::size_t> window_;  // elements of the liquefaction region inside the window
   double window_width_ = 0.0;        // m
+  std::vector<double> jacobians_before_;
   std::vector<QualityRow> rows_;
   CsvFile file_;
 };

@@ -349,7 +349,7 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
   if (const auto text = energy.warning(model, report.ledger, forces.hourglass_work()); !text.empty()) add_warning(text);
   report.counts = newmark.counts();
   report.quality = quality.rows();
-  report.window = find_transfer_window(report.quality, motion.significant_duration(0.05, 0.95).second);
+  report.window = find_transfer_window(report.quality, motion);
   if (forces.residual_floor()) report.liquefaction = liquefaction_summary(model, *forces.residual_floor());
   report.material_seconds = material_before + forces.material_seconds();
   report.wall_seconds = wall_before + seconds_since(start);

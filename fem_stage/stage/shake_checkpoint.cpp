@@ -56,11 +56,11 @@ void for_each_count(AnyCounts& c, Action action) {
 
 template <class Action>
 void for_each_value(QualityRow& r, Action action) {
-  for (double* x :
-       {&r.time, &r.largest_displacement, &r.smallest_jacobian, &r.liquefied_depth, &r.mean_ratio, &r.liquefied_share})
+  for (double* x : {&r.time, &r.largest_displacement, &r.smallest_jacobian, &r.jacobian_kept, &r.liquefied_depth,
+                    &r.mean_ratio, &r.liquefied_share})
     action(*x);
 }
-constexpr std::size_t quality_width = 7;
+constexpr std::size_t quality_width = 8;
 
 }  // namespace
 

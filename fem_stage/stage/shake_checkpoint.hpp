@@ -15,7 +15,7 @@
 
 namespace tailrun::fem {
 
-constexpr int shake_checkpoint_version = 1;
+constexpr int shake_checkpoint_version = 2;
 constexpr const char* shake_checkpoint_name = "shake_checkpoint.h5";
 
 // What a shake has to remember besides the model's state.

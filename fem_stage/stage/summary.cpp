@@ -123,6 +123,7 @@ Json shake_summary(const Model& model, const Motion& motion, const ShakeReport& 
   out["transfer_window"] = {{"opens_s", optional(report.window.opens)},
                             {"closes_s", optional(report.window.closes)},
                             {"suggested_transfer_time_s", optional(report.window.suggested)},
+                            {"shaking_left_then", report.window.shaking_left},
                             {"reason", report.window.reason},
                             {"snapshots_asked_for_s", model.options->output.snapshots}};
   out["snapshots"] = report.snapshots;
