@@ -106,9 +106,11 @@ def plot_series(plt, quality, summary, time, output):
     axes[1].legend(loc="upper left")
     axes[2].plot(t, quality["largest_displacement_m"], "C0")
     axes[2].set_ylabel("largest\ndisplacement (m)")
-    axes[3].plot(t, quality["smallest_scaled_jacobian"], "C0")
-    axes[3].axhline(0.0, color="0.6", lw=0.8)
-    axes[3].set(ylabel="smallest scaled\nJacobian (1)", xlabel="time since the start of shaking (s)")
+    axes[3].plot(t, quality["smallest_scaled_jacobian"], "C0", label="the smallest")
+    if "least_jacobian_kept" in quality:  # not in series of earlier programs
+        axes[3].plot(t, quality["least_jacobian_kept"], "C1", label="least that an element has of its own at the start")
+        axes[3].legend(loc="lower left")
+    axes[3].set(ylabel="scaled Jacobian (1)", xlabel="time since the start of shaking (s)", ylim=(min(0.0, quality["smallest_scaled_jacobian"].min()), 1.02))
     window = summary.get("transfer_window", {})
     opens, closes = window.get("opens_s"), window.get("closes_s")
     for axis in axes:
