@@ -92,9 +92,11 @@ def panel(axis, tables, headline, words):
     for (size, table), marker in zip(tables.items(), MARKERS):
         for line, colour in zip(lines(table), COLOURS):
             mean, spread = line.mean(headline.name) * headline.factor, line.spread(headline.name) * headline.factor
-            solid = marker == MARKERS[0]
-            axis.errorbar(line.over, mean, spread, color=colour, marker=marker, ms=5, mfc=colour if not solid else "white", lw=1.3, ls="--" if solid else "-",
-                          capsize=3, label=", ".join(word for word in (size if len(tables) > 1 else "", line.name) if word))
+            first = marker == MARKERS[0]
+            axis.plot(line.over, mean, color=colour, marker=marker, ms=5, mfc="white" if first else colour, lw=1.3, ls="--" if first else "-",
+                      label=", ".join(word for word in (size if len(tables) > 1 else "", line.name) if word))
+            some = np.isfinite(spread)
+            axis.errorbar(np.array(line.over)[some], mean[some], spread[some], color=colour, ls="none", capsize=3)
             for point, values in zip(line.over, line.values[headline.name]):
                 axis.plot(np.full(len(values), point), values * headline.factor, ".", ms=3, color=colour, alpha=0.5)
     axis.set(title=headline.label, ylabel=headline.display_unit, xlabel=words)
