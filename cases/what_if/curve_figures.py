@@ -100,7 +100,8 @@ def panel(axis, tables, headline, words):
             for point, values in zip(line.over, line.values[headline.name]):
                 axis.plot(np.full(len(values), point), values * headline.factor, ".", ms=3, color=colour, alpha=0.5)
     axis.set(title=headline.label, ylabel=headline.display_unit, xlabel=words)
-    axis.set_ylim(bottom=min(0.0, axis.get_ylim()[0]))
+    low, high = axis.get_ylim()
+    axis.set_ylim(min(0.0, low), high + 0.05 * abs(high))
     axis.grid(alpha=0.3)
 
 
@@ -120,6 +121,7 @@ def draw(table, folder):
         panel(axis, tables, headline, curves["axis"])
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=min(len(labels), 4), fontsize=9)
-    figure.suptitle("mean and standard deviation over runs that differ in nothing physical; dots: the runs", fontsize=9)
+    several = any(count > 1 for own in tables.values() for line in lines(own) for count in line.members)
+    figure.suptitle("mean and standard deviation over runs that differ in nothing physical; dots: the runs" if several else "one run each", fontsize=9)
     style.save(figure, Path(folder) / "curves.png")
     return [("curves.png", "Over " + curves["axis"])]
