@@ -15,8 +15,8 @@ template <int Dim>
 FrontSeries<Dim>::FrontSeries(const Scene& scene)
     : moving_(moving_materials(scene)),
       output_(scene.output),
-      start_(scene.particles.position),
       rest_duration_(scene.rest.duration),
+      start_(scene.particles.position),
       cell_size_(scene.cell_size) {
   const ParticleSet& set = scene.particles;
   const std::vector<double> before = positions_before(set);
