@@ -1,25 +1,18 @@
-// What the three programs' mains have in common: options --quiet and --version, messages on standard error through
-// spdlog, and exceptions turned into exit statuses.
+// What the three programs do around their computations: how much they say, and the texts beside their results.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-namespace CLI {
-class App;
-}
-
 namespace tailrun {
 
-// Adds --quiet, --verbose, --threads and --version, and sets up messages. To be called before anything else: it also
-// sees to standard streams that are closed, and to how the HDF5 library ends.
-void add_common_options(CLI::App& app);
+// --quiet: no progress, and messages only from warnings on.
+void set_quiet();
 bool quiet();
 
-// Parses the command line and runs the chosen sub-command's callback. Returns the exit status: 0 done, 1 bad input
-// (InputError or a wrong command line), 2 the computation failed (anything else).
-int run_application(CLI::App& app, int argc, char** argv);
+// Of the lines of CaseFile::echo those whose value is not the default.
+std::vector<std::string> differing_options(const std::vector<std::string>& lines);
 
 // Of a case file's options (CaseFile::echo) those that differ from their defaults, on standard error unless --quiet,
 // and where all of them stand: `all`, which write_options makes.

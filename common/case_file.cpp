@@ -1,6 +1,7 @@
 #include "common/case_file.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <fstream>
@@ -49,7 +50,7 @@ std::string child(const std::string& pointer, const std::string& key) {
 }
 
 std::string kind(const Json& value) {
-  std::string shown = value.dump();
+  std::string shown = text_of_json(value);
   if (shown.size() > 60) shown = shown.substr(0, 57) + "...";
   return fmt::format("{} {}", value.type_name(), shown);
 }
@@ -287,7 +288,7 @@ std::vector<double> CaseNode::numbers(const std::string& key, std::string_view u
 std::vector<double> CaseNode::numbers_or(const std::string& key, std::string_view unit, Range range,
                                          const std::vector<double>& fallback, std::size_t count) const {
   std::vector<double> values = find(key) ? list_of_numbers(key, unit, range, count) : fallback;
-  record(key, Json(values).dump(), unit, Json(fallback).dump());
+  record(key, text_of_json(Json(values)), unit, text_of_json(Json(fallback)));
   return values;
 }
 
@@ -297,7 +298,7 @@ std::vector<std::string> CaseNode::texts_or(const std::string& key, const std::v
   if (json && (!json->is_array() || std::any_of(json->begin(), json->end(), wrong)))
     fail(key, fmt::format("found {}, but a list of texts is required", kind(*json)));
   const auto values = json ? json->get<std::vector<std::string>>() : fallback;
-  record(key, Json(values).dump(), "", Json(fallback).dump());
+  record(key, text_of_json(Json(values)), "", text_of_json(Json(fallback)));
   return values;
 }
 

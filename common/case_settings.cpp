@@ -1,6 +1,7 @@
 #include "common/case_settings.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -78,7 +79,7 @@ Json& member_of(Json& object, std::size_t depth, const std::string& place, const
     refuse(setting, path,
            fmt::format("there is no {}/{}. Did you mean '{}'? There is: {}. If it is meant, give it as a whole: "
                        "--set '{}/{}={}'",
-                       place, key, *slip, joined(there), place, key, whole.dump()));
+                       place, key, *slip, joined(there), place, key, text_of_json(whole)));
   }
   return object[key] = Json::object();
 }
@@ -88,7 +89,7 @@ Json& member_of(Json& object, std::size_t depth, const std::string& place, const
 CaseSetting parse_setting(const std::string& text) {
   const auto fail = [&](const std::string& message) { throw InputError(fmt::format("--set {}: {}", text, message)); };
   try {
-    Json(text).dump();
+    text_of_json(Json(text));
   } catch (const nlohmann::json::type_error&) {
     throw InputError("--set: a character that is not UTF-8");
   }
@@ -134,8 +135,8 @@ void apply_settings(Json& json, const std::vector<CaseSetting>& settings, const 
 
 std::string effective_text(const Json& json, const std::vector<CaseSetting>& settings) {
   std::string text;
-  for (const CaseSetting& setting : settings) text += fmt::format("// --set {}\n", Json(setting.text).dump());
-  return text + json.dump(2) + "\n";
+  for (const CaseSetting& setting : settings) text += fmt::format("// --set {}\n", text_of_json(Json(setting.text)));
+  return text + text_of_json(json, 2) + "\n";
 }
 
 bool is_set(const std::string& pointer, const std::vector<CaseSetting>& settings) {

@@ -1,10 +1,10 @@
 #include "common/file_format.hpp"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include "common/error.hpp"
 #include "common/hdf5_structure.hpp"
+#include "common/log.hpp"
 
 namespace tailrun {
 
@@ -28,8 +28,8 @@ void check_format(const Hdf5Reader& file, const std::string& format, int format_
         fmt::format("{}: format version {}, but this program reads version {}. Make the file again with this version.",
                     file.path().string(), found_version, format_version));
   if (superblock_version(file.path()) < 2 && file.has_attribute("/tailrun/provenance", "program"))
-    spdlog::warn("{}: has no checksums, as files of earlier versions of '{}' have none: damaged values are not noticed",
-                 file.path().string(), file.text_attribute("/tailrun/provenance", "program"));
+    log_warn("{}: has no checksums, as files of earlier versions of '{}' have none: damaged values are not noticed",
+             file.path().string(), file.text_attribute("/tailrun/provenance", "program"));
 }
 
 void check_positive(const Hdf5Reader& file, const std::string& name, const std::vector<double>& values) {

@@ -1,6 +1,8 @@
 #include "common/json_text.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <set>
@@ -139,6 +141,15 @@ Json parse_json(const std::filesystem::path& path, const std::string& text) {
     throw InputError(
         fmt::format("{}: {}: a number beyond the range of double (1.8e308)", path.string(), place.pointer()));
   }
+}
+
+nlohmann::ordered_json json_or_null(const std::string& text) {
+  Json json = Json::parse(text, nullptr, false);
+  return json.is_discarded() ? Json() : json;
+}
+
+std::string text_of_json(const nlohmann::ordered_json& json, int indent) {
+  return json.dump(indent);
 }
 
 }  // namespace tailrun

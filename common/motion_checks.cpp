@@ -1,5 +1,5 @@
 // What can be computed with a motion but is hardly meant.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Reading of motions: what the file says about units and columns is followed or refused, and nothing in it is left out
 // without a word.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

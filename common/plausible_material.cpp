@@ -1,6 +1,6 @@
 #include "common/plausible_material.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <numbers>
 

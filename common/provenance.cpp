@@ -1,6 +1,6 @@
 #include "common/provenance.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <openssl/evp.h>
 
 #include <fstream>

@@ -1,12 +1,12 @@
 #include "common/same_inputs.hpp"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "common/json_text.hpp"
+#include "common/log.hpp"
 
 namespace tailrun {
 namespace {
@@ -45,8 +45,8 @@ void check_same_inputs(const Hdf5Reader& file, const Provenance& provenance) {
                                  k + 1, k < names.size() ? names[k] : "none", now, place));
   }
   if (file.text_attribute(group, "version") != version())
-    spdlog::warn("{} was written by version {} of the program, this is {}: results may differ in the last digits",
-                 file.path().string(), file.text_attribute(group, "version"), version());
+    log_warn("{} was written by version {} of the program, this is {}: results may differ in the last digits",
+             file.path().string(), file.text_attribute(group, "version"), version());
 }
 
 }  // namespace tailrun

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/application.hpp"
+#include "common/json_text.hpp"
 
 namespace tailrun {
 
@@ -50,7 +51,7 @@ void write_file_series(const std::filesystem::path& path, const std::vector<std:
   index["file-series-version"] = "1.0";
   index["files"] = nlohmann::ordered_json::array();
   for (std::size_t k = 0; k < names.size(); ++k) index["files"].push_back({{"name", names[k]}, {"time", times[k]}});
-  write_text_file(path.string(), index.dump(1) + "\n");
+  write_text_file(path.string(), text_of_json(index, 1) + "\n");
 }
 
 }  // namespace tailrun

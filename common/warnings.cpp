@@ -1,8 +1,8 @@
 #include "common/warnings.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
+
+#include "common/log.hpp"
 
 namespace tailrun {
 namespace {
@@ -18,7 +18,7 @@ void add_warning(const std::string& text) {
   auto& list = kept();
   if (std::find(list.begin(), list.end(), text) != list.end()) return;
   list.push_back(text);
-  spdlog::warn("warning: {}", text);
+  log_warn("warning: {}", text);
 }
 
 const std::vector<std::string>& warnings() {

@@ -16,16 +16,18 @@
 //   fem_stage consolidate fem.json --mesh out/fem/mesh.msh --from out/fem/snapshot_t16.000.h5 -o out/consolidation
 //   fem_stage element test.json -o out.csv             one material point under a laboratory test's loading
 //   fem_stage calibrate target.json -o out/calibration parameters from a target strength
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
-#include <CLI/CLI.hpp>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <filesystem>
 
 #include "common/application.hpp"
 #include "common/case_settings.hpp"
+#include "common/command_line.hpp"
 #include "common/error.hpp"
 #include "common/interrupt.hpp"
+#include "common/json_text.hpp"
+#include "common/log.hpp"
 #include "common/output_lock.hpp"
 #include "common/output_place.hpp"
 #include "common/patient_threads.hpp"
@@ -88,9 +90,9 @@ void make_mesh(const Arguments& arguments) {
     fs::rename(temporary, output);
   }
   const auto summary = mesh_summary(mesh);
-  write_text_file((fs::path(arguments.folder) / "mesh.json").string(), summary.dump(2) + "\n");
-  spdlog::info("mesh: {} nodes, {} quadrilaterals, smallest scaled Jacobian {:.3f}", mesh.nodes(), mesh.elements(),
-               summary["min_scaled_jacobian"].get<double>());
+  write_text_file((fs::path(arguments.folder) / "mesh.json").string(), text_of_json(summary, 2) + "\n");
+  log_info("mesh: {} nodes, {} quadrilaterals, smallest scaled Jacobian {:.3f}", mesh.nodes(), mesh.elements(),
+           summary["min_scaled_jacobian"].get<double>());
 }
 
 void tell_options(const Arguments& arguments, const FemCase& options, const std::string& stage, bool echo = true) {
@@ -113,8 +115,9 @@ void make_geostatic(const Arguments& arguments) {
   const GeostaticReport report = run_geostatic(model, points, state);
   check_state(columns_of(make_snapshot(model, state, 0.0, 0.0, 0.0), arguments.case_file, {}, false));
   write_state(geostatic_path(arguments), model, state, points, 0.0, 0.0, 0.0);
-  write_text_file((fs::path(arguments.folder) / "geostatic.json").string(), geostatic_summary(report).dump(2) + "\n");
-  spdlog::info(
+  write_text_file((fs::path(arguments.folder) / "geostatic.json").string(),
+                  text_of_json(geostatic_summary(report), 2) + "\n");
+  log_info(
       "geostatic: residual {:.1e} of the weight (elastic {:.1e}, after the plastic switch {:.1e}), settled {:.1f} mm, "
       "largest tension {:.1f} kPa, {:.1f} s",
       report.final_residual, report.elastic_residual, report.switch_residual, 1e3 * report.settlement,
@@ -166,11 +169,11 @@ void make_shake(const Arguments& arguments, bool echo) {
   note_signals();
   const ShakeReport report = run_shake(model, points, state, motion, arguments.folder, control);
   const auto summary = shake_summary(model, motion, report);
-  write_text_file((fs::path(arguments.folder) / "summary.json").string(), summary.dump(2) + "\n");
+  write_text_file((fs::path(arguments.folder) / "summary.json").string(), text_of_json(summary, 2) + "\n");
   if (!report.failure.empty())
     throw ComputationError(report.failure + "; the last good state is " +
                            (fs::path(arguments.folder) / report.snapshots.back()).string());
-  spdlog::info(
+  log_info(
       "shake: {:.2f} s, largest displacement {:.2f} m, liquefied depth {:.1f} m, smallest scaled Jacobian {:.2f}, "
       "energy balance {:+.1e}, {:.0f} s",
       report.end_time, report.quality.back().largest_displacement, report.quality.back().liquefied_depth,
@@ -192,57 +195,55 @@ void make_consolidation(const Arguments& arguments) {
   check_restart(arguments, options, state, false);
   const ConsolidationReport report = run_consolidation(model, points, state, arguments.folder);
   const auto summary = consolidation_summary(report);
-  write_text_file((fs::path(arguments.folder) / "consolidation.json").string(), summary.dump(2) + "\n");
+  write_text_file((fs::path(arguments.folder) / "consolidation.json").string(), text_of_json(summary, 2) + "\n");
   if (!report.failure.empty())
     throw ComputationError(report.failure + "; the last good state is " +
                            (fs::path(arguments.folder) / report.snapshots.back()).string());
-  spdlog::info(
-      "consolidation: {:.4g} s, largest r_u {:.3f} to {:.3f}, largest displacement {:.3f} m, {} steps, {:.1f} s",
-      report.end_time - report.start_time, report.first_ratio, report.last_ratio, report.settlement,
-      report.counts.steps, report.wall_seconds);
+  log_info("consolidation: {:.4g} s, largest r_u {:.3f} to {:.3f}, largest displacement {:.3f} m, {} steps, {:.1f} s",
+           report.end_time - report.start_time, report.first_ratio, report.last_ratio, report.settlement,
+           report.counts.steps, report.wall_seconds);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   wait_patiently(argv);
-  CLI::App app("Finite element stage: shaking and liquefaction triggering until the hand-over", "fem_stage");
-  add_common_options(app);
-  app.require_subcommand(1);
+  CommandLine line("Finite element stage: shaking and liquefaction triggering until the hand-over", "fem_stage");
   Arguments arguments;
+  constexpr auto required = SubCommand::Need::required;
   const auto add_stage = [&](const char* name, const char* what) {
-    CLI::App* command = app.add_subcommand(name, what);
-    command->add_option("case", arguments.case_file, "fem.json")->required();
-    command->add_option("-o,--output", arguments.folder, "Folder of the results")->capture_default_str();
-    command->add_option("--size", arguments.size, "Entry of /mesh/sizes in the case (coarse, default, fine)");
+    SubCommand command = line.add_command(name, what);
+    command.add("case", arguments.case_file, "fem.json", required);
+    command.add("-o,--output", arguments.folder, "Folder of the results");
+    command.add("--size", arguments.size, "Entry of /mesh/sizes in the case (coarse, default, fine)");
     return command;
   };
-  const auto let_trust = [&](CLI::App* command) {
-    command->add_flag("--trust-geometry", arguments.trust_geometry,
-                      "Let the geometry start programs and write files (SystemCall, Save ...)");
+  const auto let_trust = [&](SubCommand command) {
+    command.add_flag("--trust-geometry", arguments.trust_geometry,
+                     "Let the geometry start programs and write files (SystemCall, Save ...)");
     return command;
   };
-  let_trust(add_stage("mesh", "Geometry to mesh.msh"))->callback([&] { make_mesh(arguments); });
+  const char* mesh_option = "Mesh file (default: mesh.msh in the results' folder)";
+  let_trust(add_stage("mesh", "Geometry to mesh.msh")).does([&] { make_mesh(arguments); });
 
-  CLI::App* geostatic = add_stage("geostatic", "Gravity and water to geostatic.h5");
-  geostatic->add_option("--mesh", arguments.mesh, "Mesh file (default: mesh.msh in the results' folder)");
-  geostatic->callback([&] { make_geostatic(arguments); });
+  SubCommand geostatic = add_stage("geostatic", "Gravity and water to geostatic.h5");
+  geostatic.add("--mesh", arguments.mesh, mesh_option);
+  geostatic.does([&] { make_geostatic(arguments); });
 
-  CLI::App* shake = add_stage("shake", "Earthquake from geostatic.h5 to snapshots");
-  shake->add_option("--mesh", arguments.mesh, "Mesh file (default: mesh.msh in the results' folder)");
-  shake->add_option("--geostatic", arguments.geostatic,
-                    "Geostatic state (default: geostatic.h5 in the results' folder)");
-  shake->add_option("--from", arguments.from, "Go on from this state (snapshot_t*.h5 or last_good_t*.h5)");
-  shake->add_flag("--resume", arguments.resume,
-                  "Go on from the results' folder's shake_checkpoint.h5, written by the same input");
-  shake->callback([&] { make_shake(arguments, true); });
+  SubCommand shake = add_stage("shake", "Earthquake from geostatic.h5 to snapshots");
+  shake.add("--mesh", arguments.mesh, mesh_option);
+  shake.add("--geostatic", arguments.geostatic, "Geostatic state (default: geostatic.h5 in the results' folder)");
+  shake.add("--from", arguments.from, "Go on from this state (snapshot_t*.h5 or last_good_t*.h5)");
+  shake.add_flag("--resume", arguments.resume,
+                 "Go on from the results' folder's shake_checkpoint.h5, written by the same input");
+  shake.does([&] { make_shake(arguments, true); });
 
-  CLI::App* consolidate = add_stage("consolidate", "Drainage and settlement after the shaking");
-  consolidate->add_option("--mesh", arguments.mesh, "Mesh file (default: mesh.msh in the results' folder)");
-  consolidate->add_option("--from", arguments.from, "State after the shaking (snapshot_t*.h5)")->required();
-  consolidate->callback([&] { make_consolidation(arguments); });
+  SubCommand consolidate = add_stage("consolidate", "Drainage and settlement after the shaking");
+  consolidate.add("--mesh", arguments.mesh, mesh_option);
+  consolidate.add("--from", arguments.from, "State after the shaking (snapshot_t*.h5)", required);
+  consolidate.does([&] { make_consolidation(arguments); });
 
-  let_trust(add_stage("run", "mesh, geostatic and shake"))->callback([&] {
+  let_trust(add_stage("run", "mesh, geostatic and shake")).does([&] {
     case_motion(read_fem_case(arguments.case_file, arguments.size));  // wrong? Then say so before computing
     make_mesh(arguments);
     make_geostatic(arguments);
@@ -250,25 +251,25 @@ int main(int argc, char** argv) {
   });
 
   ElementTestOptions element_test;
-  CLI::App* element = app.add_subcommand("element", "One material point under a laboratory test's loading");
-  element->add_option("case", element_test.case_file, "test.json")->required();
-  element->add_option("-o,--output", element_test.output,
-                      "CSV of the response (SI; stresses and volumetric strain compression positive)");
-  element->add_option("--summary", element_test.summary, "JSON summary (also printed)");
-  element->callback([&] {
+  SubCommand element = line.add_command("element", "One material point under a laboratory test's loading");
+  element.add("case", element_test.case_file, "test.json", required);
+  element.add("-o,--output", element_test.output,
+              "CSV of the response (SI; stresses and volumetric strain compression positive)");
+  element.add("--summary", element_test.summary, "JSON summary (also printed)");
+  element.does([&] {
     for (const auto& path : {element_test.output, element_test.summary})
       if (!path.empty()) check_output_file(path);
     run_element_test(element_test);
   });
 
   CalibrationOptions calibration;
-  CLI::App* calibrate = app.add_subcommand("calibrate", "PM4Sand parameters from target strengths");
-  calibrate->add_option("case", calibration.case_file, "target.json")->required();
-  calibrate->add_option("-o,--output", calibration.output_folder, "Folder of curves, picture and parameters")
-      ->default_val("calibration");
-  calibrate->callback([&] {
+  calibration.output_folder = "calibration";
+  SubCommand calibrate = line.add_command("calibrate", "PM4Sand parameters from target strengths");
+  calibrate.add("case", calibration.case_file, "target.json", required);
+  calibrate.add("-o,--output", calibration.output_folder, "Folder of curves, picture and parameters");
+  calibrate.does([&] {
     hold_output_folder(calibration.output_folder);
     run_calibration(calibration);
   });
-  return run_application(app, argc, argv);
+  return line.run(argc, argv);
 }

@@ -14,14 +14,15 @@
 // The folder given with -o gets frames/ (particles files for ParaView and an index), front.csv, ledger.csv and
 // summary.json. Exit status: 0 done, 1 bad input, 2 the computation failed or was interrupted (the last good state is
 // on disk; after SIGINT or SIGTERM it is the state of that moment).
-#include <fmt/format.h>
-#include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 #include "common/application.hpp"
 #include "common/case_settings.hpp"
+#include "common/command_line.hpp"
 #include "common/interrupt.hpp"
 #include "common/output_lock.hpp"
 #include "common/patient_threads.hpp"
+#include "mpm_stage/run/program_of_solver.hpp"
 #include "mpm_stage/run/runout.hpp"
 #include "mpm_stage/scene/request_checks.hpp"
 #include "mpm_stage/scene/scene.hpp"
@@ -38,19 +39,20 @@ constexpr std::size_t particles_per_thread = 2000;
 
 int main(int argc, char** argv) {
   wait_patiently(argv);
-  CLI::App app{"Runout of liquefied soil by the material point method", "mpm_stage"};
-  add_common_options(app);
+  CommandLine line("Runout of liquefied soil by the material point method", "mpm_stage");
+  constexpr auto required = SubCommand::Need::required;
   std::filesystem::path case_path, output, particles;
   std::string size;
-  CLI::App* command = app.add_subcommand("run", "Run a case file (mpm.json)");
-  command->add_option("case", case_path, "case file (JSON)")->required();
-  command->add_option("-o,--output", output, "folder for the results")->required();
-  command->add_option("--particles", particles, "particles file, in place of the case file's particles_file");
-  command->add_option("--size", size, "entry of /sizes in the case (coarse, default, fine): its cell size");
+  SubCommand command = line.add_command("run", "Run a case file (mpm.json)");
+  command.add("case", case_path, "case file (JSON)", required);
+  command.add("-o,--output", output, "folder for the results", required);
+  command.add("--particles", particles, "particles file, in place of the case file's particles_file");
+  command.add("--size", size, "entry of /sizes in the case (coarse, default, fine): its cell size");
   RunControl control;
-  command->add_flag("--resume", control.resume,
-                    "go on from the output folder's checkpoint.h5, written by the same input");
-  command->callback([&] {
+  command.add_flag("--resume", control.resume,
+                   "go on from the output folder's checkpoint.h5, written by the same input");
+  command.does([&] {
+    take_program_with_solver(case_path, argv);
     const CaseFile file(case_path);
     const Scene scene = read_scene(file, particles, size);
     file.finish();
@@ -75,6 +77,5 @@ int main(int argc, char** argv) {
     else
       run_scene<3>(scene, output, provenance, control);
   });
-  app.require_subcommand(1);
-  return run_application(app, argc, argv);
+  return line.run(argc, argv);
 }

@@ -11,16 +11,18 @@
 //   transfer_tool info particles.h5
 //   transfer_tool import import.json -o snapshot.h5
 //   transfer_tool strength transfer.json -o strength.csv
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
-#include <CLI/CLI.hpp>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <filesystem>
 
 #include "common/application.hpp"
 #include "common/case_settings.hpp"
+#include "common/command_line.hpp"
 #include "common/error.hpp"
+#include "common/json_text.hpp"
+#include "common/log.hpp"
 #include "common/output_place.hpp"
 #include "common/patient_threads.hpp"
 #include "common/plausible_state.hpp"
@@ -115,12 +117,12 @@ void run(const RunOptions& options) {
                particles.particle_size, audit_table(result));
 
   // 5. Write
-  particles.notes["audit"] = audit_json(result).dump(1);
-  particles.notes["assignment"] = assignment.record.dump(1);
-  if (!warnings().empty()) particles.notes["warnings"] = nlohmann::ordered_json(warnings()).dump(1);
+  particles.notes["audit"] = text_of_json(audit_json(result), 1);
+  particles.notes["assignment"] = text_of_json(assignment.record, 1);
+  if (!warnings().empty()) particles.notes["warnings"] = text_of_json(nlohmann::ordered_json(warnings()), 1);
   write_particles(options.output_path, particles, provenance);
   write_options(all, title, file.echo());
-  spdlog::info("wrote {}", options.output_path);
+  log_info("wrote {}", options.output_path);
 }
 
 void import(const std::string& case_path, const std::string& output_path) {
@@ -152,58 +154,53 @@ void strength(const StrengthOptions& options) {
   fmt::print("{}", strength_text(curves, 1e3 * options.highest));
   if (options.output_path.empty()) return;
   write_text_file(options.output_path, strength_csv(curves, 1e3 * options.highest, points));
-  spdlog::info("wrote {}", options.output_path);
+  log_info("wrote {}", options.output_path);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   wait_patiently(argv);
-  CLI::App app{"Hands the finite elements' state over to the particles", "transfer_tool"};
-  tailrun::add_common_options(app);
-  app.require_subcommand(1);
+  CommandLine line("Hands the finite elements' state over to the particles", "transfer_tool");
+  constexpr auto required = SubCommand::Need::required;
 
   RunOptions options;
-  auto* run_command = app.add_subcommand("run", "Snapshot to particles");
-  run_command->add_option("case", options.case_path, "transfer.json")->required();
-  run_command->add_option("--snapshot", options.snapshot_path, "Snapshot of fem_stage or of `import`")->required();
-  run_command->add_option(
-      "--geostatic", options.geostatic_path,
-      "Snapshot of the state before shaking, for sigma'_v0 and r_u (default: the snapshot's own record)");
-  run_command->add_option("-o,--output", options.output_path, "Particles file to write")->required();
-  run_command->add_option("--size", options.size, "Entry of the case's \"sizes\", e.g. coarse");
-  run_command->callback([&] { run(options); });
+  SubCommand run_command = line.add_command("run", "Snapshot to particles");
+  run_command.add("case", options.case_path, "transfer.json", required);
+  run_command.add("--snapshot", options.snapshot_path, "Snapshot of fem_stage or of `import`", required);
+  run_command.add("--geostatic", options.geostatic_path,
+                  "Snapshot of the state before shaking, for sigma'_v0 and r_u (default: the snapshot's own record)");
+  run_command.add("-o,--output", options.output_path, "Particles file to write", required);
+  run_command.add("--size", options.size, "Entry of the case's \"sizes\", e.g. coarse");
+  run_command.does([&] { run(options); });
 
   std::string info_path;
   bool as_json = false;
-  auto* info_command = app.add_subcommand("info", "What is in a file of the chain");
-  info_command->add_option("file", info_path, "Snapshot, particles, frame, geostatic or checkpoint file")->required();
-  info_command->add_flag("--json", as_json, "For machines");
-  info_command->callback([&] {
+  SubCommand info_command = line.add_command("info", "What is in a file of the chain");
+  info_command.add("file", info_path, "Snapshot, particles, frame, geostatic or checkpoint file", required);
+  info_command.add_flag("--json", as_json, "For machines");
+  info_command.does([&] {
     if (!settings_in_use().empty()) throw InputError("--set: info reads no case file that it could change");
     const FileReport report = read_file_report(info_path);
-    fmt::print("{}", as_json ? report_json(report).dump(1) + "\n" : report_text(report));
+    fmt::print("{}", as_json ? text_of_json(report_json(report), 1) + "\n" : report_text(report));
   });
 
   std::string import_path, snapshot_path;
-  auto* import_command = app.add_subcommand("import", "Another code's state, as CSV tables, to a snapshot");
-  import_command->add_option("case", import_path, "import.json")->required();
-  import_command->add_option("-o,--output", snapshot_path, "Snapshot to write")->required();
-  import_command->callback([&] { import(import_path, snapshot_path); });
+  SubCommand import_command = line.add_command("import", "Another code's state, as CSV tables, to a snapshot");
+  import_command.add("case", import_path, "import.json", required);
+  import_command.add("-o,--output", snapshot_path, "Snapshot to write", required);
+  import_command.does([&] { import(import_path, snapshot_path); });
 
   StrengthOptions strength_options;
-  auto* strength_command = app.add_subcommand(
+  SubCommand strength_command = line.add_command(
       "strength", "Residual strengths over sigma'_v0: the case's own, and other models for the same soil");
-  strength_command->add_option("case", strength_options.case_path, "transfer.json")->required();
-  strength_command->add_option("-o,--output", strength_options.output_path,
-                               "CSV to write (cases/plot/strength_plot.py draws it)");
-  strength_command
-      ->add_option("--percentiles", strength_options.percentiles, "Of models that know them, in %: 16,33,50,84")
-      ->delimiter(',')
-      ->check(CLI::Range(0.01, 99.99));
-  strength_command->add_option("--stress-to", strength_options.highest, "Largest sigma'_v0, in kPa (400)")
-      ->check(CLI::Range(1.0, 1e5));
-  strength_command->callback([&] { strength(strength_options); });
+  strength_command.add("case", strength_options.case_path, "transfer.json", required);
+  strength_command.add("-o,--output", strength_options.output_path,
+                       "CSV to write (cases/plot/strength_plot.py draws it)");
+  strength_command.add("--percentiles", strength_options.percentiles, "Of models that know them, in %: 16,33,50,84",
+                       0.01, 99.99);
+  strength_command.add("--stress-to", strength_options.highest, "Largest sigma'_v0, in kPa (400)", 1.0, 1e5);
+  strength_command.does([&] { strength(strength_options); });
 
-  return tailrun::run_application(app, argc, argv);
+  return line.run(argc, argv);
 }

@@ -59,6 +59,12 @@ STAGES = {
 FEM_STAGES = ("mesh", "geostatic", "shake", "import")  # their results do not depend on the time of the hand-over
 
 
+def asks_for_other_solver(content):
+    """Whether mpm.json asks for a solver that mpm_stage hands on to mpm_stage_all (mpm_stage/step/main_solver.cpp)."""
+    scheme = content.get("scheme", {})
+    return (content.get("dimension", 2), scheme.get("shape_function", "quadratic"), scheme.get("transfer", "aflip")) != (2, "quadratic", "aflip")
+
+
 def sha256(path):
     return hashlib.sha256(Path(path).read_bytes()).hexdigest()
 
@@ -150,9 +156,12 @@ class Chain:
         return place.fem / "fem" / (f"snapshot_t{float(time):06.3f}.h5" if time else "snapshot_t?.h5")
 
     def program_key(self, stage):
-        """SHA-256 of the program; of all scripts for pictures, which share modules."""
+        """SHA-256 of the program that computes; of all scripts for pictures, which share modules."""
         if stage.program not in self._programs:
-            if stage.program.endswith(".py"):
+            everything = Path(self.bin) / "mpm_stage_all"
+            if stage.program == "mpm_stage" and asks_for_other_solver(self.content("mpm")) and everything.exists():
+                self._programs[stage.program] = sha256(everything)
+            elif stage.program.endswith(".py"):
                 own = {path.name: sha256(path) for path in sorted(PLOT.glob("*.py"))}
                 self._programs[stage.program] = hashlib.sha256(json.dumps(own).encode()).hexdigest()
             else:

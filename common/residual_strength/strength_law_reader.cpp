@@ -1,5 +1,6 @@
 // "residual_strength" of a case file, read into a law.
-#include <fmt/format.h>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

@@ -1,8 +1,11 @@
 #include "common/residual_strength/strength_tally.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
+
+#include "common/residual_strength/strength_law.hpp"
 
 namespace tailrun {
 

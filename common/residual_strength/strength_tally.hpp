@@ -1,13 +1,14 @@
 // What a strength law made of the points or particles that it was given: for records, summaries and warnings.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
-#include "common/residual_strength/strength_law.hpp"
-
 namespace tailrun {
+
+struct Strength;
+struct StrengthLaw;
 
 // Least, mean and largest of some numbers.
 struct Spread {

@@ -1,6 +1,6 @@
 #include "fem_stage/boundary/nodal_loads.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -11,6 +11,7 @@
 #include "common/application.hpp"
 #include "common/case_file.hpp"
 #include "common/error.hpp"
+#include "common/json_text.hpp"
 #include "common/warnings.hpp"
 #include "fem_stage/element_test/calibration_targets.hpp"
 #include "fem_stage/element_test/curve_picture.hpp"
@@ -150,8 +151,8 @@ Json asked_for(const Pm4SandParameters& given, const Targets& targets, std::stri
 }
 
 // The case's material with the values found, to be pasted into fem.json's "materials".
-Json materials_block(const std::string& case_text, const Pm4SandParameters& sand) {
-  Json material = Json::parse(case_text, nullptr, true, true).at("material");
+Json materials_block(const CaseFile& file, const Pm4SandParameters& sand) {
+  Json material = parse_json(file.path(), file.text()).at("material");
   material["hpo"] = sand.contraction_rate;
   material["Q"] = sand.Q;
   material["R"] = sand.R;
@@ -296,11 +297,11 @@ int run_calibration(const CalibrationOptions& options) {
                     "high for this relative density and Q",
                     sand.contraction_rate));
   note_equal_strengths(out, targets);
-  out["materials"] = materials_block(file.text(), sand);
+  out["materials"] = materials_block(file, sand);
   out["warnings"] = warnings();
   write_text_file(path("calibration.svg"), svg_of(charts));
-  write_text_file(path("calibration.json"), out.dump(2) + "\n");
-  if (!quiet() || reached) std::cout << out.dump(2) << "\n";
+  write_text_file(path("calibration.json"), text_of_json(out, 2) + "\n");
+  if (!quiet() || reached) std::cout << text_of_json(out, 2) << "\n";
   if (!reached) throw ComputationError(what_was_reached(out, words, path("calibration.json")));
   return exit_done;
 }

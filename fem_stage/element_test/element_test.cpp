@@ -7,6 +7,7 @@
 
 #include "common/application.hpp"
 #include "common/error.hpp"
+#include "common/json_text.hpp"
 #include "fem_stage/element_test/element_test_case.hpp"
 
 namespace tailrun::fem {
@@ -62,7 +63,7 @@ std::string csv_of(const ElementTestResult& result) {
 int run_element_test(const ElementTestOptions& options) {
   const ElementTestCase test = read_element_test(options.case_file);
   const ElementTestResult result = simulate(test);
-  const std::string summary = summary_of(test, result).dump(2) + "\n";
+  const std::string summary = text_of_json(summary_of(test, result), 2) + "\n";
   if (!options.output.empty()) write_text_file(options.output.string(), csv_of(result));
   if (!options.summary.empty()) write_text_file(options.summary.string(), summary);
   if (!quiet() || options.summary.empty()) std::cout << summary;

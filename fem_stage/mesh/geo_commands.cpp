@@ -1,6 +1,6 @@
 #include "fem_stage/mesh/geo_commands.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

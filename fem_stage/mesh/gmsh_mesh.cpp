@@ -1,6 +1,6 @@
 #include "fem_stage/mesh/gmsh_mesh.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gmsh.h>
 #include <unistd.h>
 

@@ -1,13 +1,12 @@
 #include "fem_stage/mesh/isolated.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <linux/audit.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
 #include <omp.h>
 #include <poll.h>
-#include <spdlog/spdlog.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
@@ -113,7 +112,6 @@ std::string how_it_ended(int status) {
 
 std::string run_isolated(const std::string& what, const IsolationLimits& limits,
                          const std::function<std::string()>& work) {
-  spdlog::default_logger()->flush();
   std::fflush(nullptr);
   int ends[2];
   if (pipe(ends) != 0) throw ComputationError(fmt::format("{}: no pipe: {}", what, std::strerror(errno)));

@@ -1,6 +1,6 @@
 #include "fem_stage/mesh/rectangle_mesh.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "fem_stage/model/boundary_options.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

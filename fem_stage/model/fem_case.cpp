@@ -1,6 +1,6 @@
 #include "fem_stage/model/fem_case.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

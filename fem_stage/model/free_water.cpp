@@ -1,6 +1,6 @@
 #include "fem_stage/model/free_water.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

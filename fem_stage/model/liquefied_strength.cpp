@@ -1,12 +1,14 @@
 #include "fem_stage/model/liquefied_strength.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
+
+#include "common/residual_strength/strength_law.hpp"
 
 namespace tailrun::fem {
 
 LiquefiedStrength read_liquefied_strength(const CaseNode& node) {
   LiquefiedStrength out;
-  out.law = read_strength_law(node);
+  out.law = std::make_shared<const StrengthLaw>(read_strength_law(node));
   out.mobilisation_strain = node.number_or("mobilisation_strain", "1", {1e-4, 1.0}, out.mobilisation_strain);
   const CaseNode trigger = node.object_or_empty("trigger");
   out.pore_pressure_ratio =

@@ -4,13 +4,17 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 
-#include "common/residual_strength/strength_law.hpp"
+namespace tailrun {
+class CaseNode;
+struct StrengthLaw;
+}  // namespace tailrun
 
 namespace tailrun::fem {
 
 struct LiquefiedStrength {
-  StrengthLaw law;
+  std::shared_ptr<const StrengthLaw> law;
   // Liquefied for good once either is passed; infinity: never by that.
   double pore_pressure_ratio = 0.7;                               // r_u
   double shear_strain = std::numeric_limits<double>::infinity();  // engineering, in the plane

@@ -1,13 +1,13 @@
 #include "fem_stage/model/model.hpp"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "common/error.hpp"
+#include "common/log.hpp"
 #include "common/warnings.hpp"
 #include "fem_stage/boundary/phreatic_line.hpp"
 #include "fem_stage/mesh/gmsh_mesh.hpp"
@@ -158,8 +158,8 @@ Model build_model(const FemCase& options, const std::filesystem::path& mesh_file
   check_joints(mesh, options.boundaries, mesh_file.string());
   check_output_places(mesh, options);
   if (!options.phreatic_line.empty() && options.mesh.snap_to_phreatic_line > 0.0)
-    spdlog::info("{} nodes moved onto the phreatic line",
-                 snap_to_phreatic_line(mesh, options.phreatic_line, options.mesh.snap_to_phreatic_line));
+    log_info("{} nodes moved onto the phreatic line",
+             snap_to_phreatic_line(mesh, options.phreatic_line, options.mesh.snap_to_phreatic_line));
 
   std::vector<int> material_of_element;
   for (std::size_t e = 0; e < mesh.elements(); ++e) {

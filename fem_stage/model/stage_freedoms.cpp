@@ -1,6 +1,6 @@
 #include "fem_stage/model/stage_freedoms.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "fem_stage/output/history.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>

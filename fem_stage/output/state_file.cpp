@@ -1,6 +1,6 @@
 #include "fem_stage/output/state_file.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "fem_stage/solver/energy_watch.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,6 @@
 #include "fem_stage/stage/consolidate.hpp"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <chrono>

@@ -1,12 +1,14 @@
 #include "fem_stage/stage/liquefaction.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "common/error.hpp"
+#include "common/residual_strength/strength_law.hpp"
 #include "common/residual_strength/strength_tally.hpp"
 #include "common/warnings.hpp"
 #include "fem_stage/output/state_file.hpp"
@@ -61,13 +63,13 @@ std::optional<ResidualFloor> make_residual_floor(const Model& model, const State
       continue;
     }
     const double sigma_v0 = std::max(0.0, -state.initial_stress[4 * e + 1]);
-    const Strength s_R = found->second.law(sigma_v0);
+    const Strength s_R = (*found->second.law)(sigma_v0);
     strength[e] = s_R.value;
     mobilisation[e] = found->second.mobilisation_strain;
     tallies[found->first].add(sigma_v0, s_R);
   }
   for (const auto& [index, tally] : tallies)
-    for (const auto& text : tally.warnings(chosen.at(index).law))
+    for (const auto& text : tally.warnings(*chosen.at(index).law))
       add_warning(fmt::format("/materials/{}/residual_strength: {}",
                               model.options->materials[static_cast<std::size_t>(index)].name, text));
   ResidualFloor floor(std::move(strength), mobilisation);
@@ -132,7 +134,7 @@ nlohmann::ordered_json liquefaction_summary(const Model& model, const ResidualFl
       ++liquefied;
       strength.add(floor.strength(e));
     }
-    auto row = given.law.record;
+    auto row = given.law->record;
     row["mobilisation_strain"] = given.mobilisation_strain;
     row["elements"] = elements;
     row["liquefied_elements"] = liquefied;

@@ -2,7 +2,7 @@
 // (material/residual_floor.hpp), softening by the element's height (material/softening_scale.hpp).
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 
 #include "fem_stage/material/residual_floor.hpp"

@@ -1,13 +1,13 @@
 #include "fem_stage/stage/shake.hpp"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <chrono>
 #include <cmath>
 #include <numbers>
 
 #include "common/error.hpp"
+#include "common/log.hpp"
 #include "common/progress.hpp"
 #include "common/vtkhdf.hpp"
 #include "common/warnings.hpp"
@@ -75,7 +75,7 @@ class Stepper {
     if (halvings_left == 0)
       return fmt::format("at t = {:.5f} s with a step of {:.2e} s: {}", state_.time, dt, result.reason);
     ++newmark_.counts().halvings;
-    spdlog::debug("t = {:.5f} s: step of {:.2e} s cut: {}", state_.time, dt, result.reason);
+    log_debug("t = {:.5f} s: step of {:.2e} s cut: {}", state_.time, dt, result.reason);
     for (int half = 0; half < 2; ++half)
       if (std::string reason = advance(0.5 * dt, halvings_left - 1); !reason.empty()) return reason;
     return {};
@@ -169,7 +169,7 @@ ShakeReport run_shake(const Model& model, MaterialPoints& points, State& state, 
   if (control.resume) {
     resumed = read_shake_checkpoint(checkpoint, model, state, points);
     free_field.restore(resumed->free_field);
-    spdlog::info("going on from {}: t = {:.6g} s, step {}", checkpoint.string(), state.time, resumed->counts.steps);
+    log_info("going on from {}: t = {:.6g} s, step {}", checkpoint.string(), state.time, resumed->counts.steps);
   } else {
     std::filesystem::remove(checkpoint);
   }

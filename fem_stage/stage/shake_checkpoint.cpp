@@ -1,6 +1,6 @@
 #include "fem_stage/stage/shake_checkpoint.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "fem_stage/stage/summary.hpp"
 
 #include <omp.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 

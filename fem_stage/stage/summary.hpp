@@ -1,7 +1,7 @@
 // summary.json of fem_stage: what was computed, how long each phase took, and how good it is.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "fem_stage/stage/consolidate.hpp"
 #include "fem_stage/stage/geostatic.hpp"

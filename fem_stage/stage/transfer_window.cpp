@@ -1,6 +1,6 @@
 #include "fem_stage/stage/transfer_window.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "mpm_stage/boundary/ponded_water.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include "mpm_stage/grid/block_grid.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

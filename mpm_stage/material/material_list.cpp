@@ -1,6 +1,6 @@
 #include "mpm_stage/material/material_list.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <string>
 

@@ -1,6 +1,6 @@
 #include "mpm_stage/material/soil_strength.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace tailrun::mpm {
 

@@ -1,6 +1,6 @@
 #include "mpm_stage/output/body_series.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "common/application.hpp"
 

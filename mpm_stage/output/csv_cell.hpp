@@ -1,7 +1,7 @@
 // Numbers of the series' CSV files.
 #pragma once
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <string>

@@ -1,6 +1,6 @@
 #include "mpm_stage/output/frames.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <numeric>

@@ -1,6 +1,7 @@
 #include "mpm_stage/output/section_series.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 

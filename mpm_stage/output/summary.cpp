@@ -1,8 +1,9 @@
 #include "mpm_stage/output/summary.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <omp.h>
 #include <sys/resource.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -82,7 +83,7 @@ Json strengths(const Scene& scene) {
   for (const StrengthInUse& use : scene.strengths) {
     const StrengthTally& t = use.found;
     Json j = {{"material", use.material}, {"particles", t.count}, {"from", use.from}};
-    j["law"] = use.law;
+    j["law"] = use.law ? *use.law : Json();
     j["factor"] = use.factor;
     if (use.has_stress) j["initial_vertical_effective_stress_Pa"] = t.stress.json(t.count);
     j["strength_Pa"] = t.strength.json(t.count);

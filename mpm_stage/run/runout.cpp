@@ -1,7 +1,7 @@
 #include "mpm_stage/run/runout.hpp"
 
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -9,6 +9,8 @@
 
 #include "common/application.hpp"
 #include "common/error.hpp"
+#include "common/json_text.hpp"
+#include "common/log.hpp"
 #include "common/progress.hpp"
 #include "common/warnings.hpp"
 #include "mpm_stage/checkpoint/checkpoint.hpp"
@@ -155,7 +157,7 @@ class Runout {
     sample();
     if (scene_.output.frame_interval > 0.0) frames_.write(particle_set<Dim>(scene_, solver_->particles(), 0.0));
     record_.setup_seconds = seconds_since(start_);
-    spdlog::info(
+    log_info(
         "{} particles in {} blocks of {} cells, first time step {:.3g} s, out-of-balance forces {:.3g} of the weight",
         solver_->particles().count(), solver_->grid().occupied(), Block<Dim>::nodes, solver_->next_dt(),
         record_.first_unbalanced);
@@ -196,7 +198,7 @@ class Runout {
     sections_.restore(std::move(state.sections));
     frames_.restore(std::move(state.frame_names), std::move(state.frame_times));
     wall_seconds_before_ = record_.wall_seconds;
-    spdlog::info("going on from {}: t = {:.6g} s, step {}", checkpoint_.string(), record_.time, record_.steps);
+    log_info("going on from {}: t = {:.6g} s, step {}", checkpoint_.string(), record_.time, record_.steps);
   }
 
   void save() {
@@ -309,7 +311,7 @@ class Runout {
     sections_.write(folder_ / "sections.csv");
     auto summary = make_summary<Dim>(scene_, *solver_, record_, ledger_, front_);
     if (sections_.any()) summary["sections"] = sections_.summary();
-    write_text_file((folder_ / "summary.json").string(), summary.dump(2) + "\n");
+    write_text_file((folder_ / "summary.json").string(), text_of_json(summary, 2) + "\n");
   }
 
   const Clock::time_point start_ = Clock::now();

@@ -1,5 +1,5 @@
 // "bodies" of mpm.json: boxes that move as prescribed.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

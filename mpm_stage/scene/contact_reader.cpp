@@ -1,5 +1,5 @@
 // "contact" of mpm.json: which soils have a velocity field of their own, and what holds them together.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // "particles" of mpm.json: boxes and polygons filled with particles, for scenes that need no other program.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <random>

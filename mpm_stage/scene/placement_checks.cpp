@@ -1,12 +1,12 @@
 // Whether particles lie where they can be computed. What is wrong for most of them is refused, what is for some is a
 // warning and a remark in the summary, each with the count and a place.
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "common/log.hpp"
 #include "mpm_stage/scene/scene.hpp"
 
 namespace tailrun::mpm {
@@ -14,7 +14,7 @@ namespace tailrun::mpm {
 namespace {
 
 void warn(Scene& scene, const std::string& text) {
-  spdlog::warn("{}", text);
+  log_warn("{}", text);
   scene.remarks.push_back(text);
 }
 

@@ -1,12 +1,12 @@
 // "ponded_water" of mpm.json: still water given here, or carried in the particles file. Without the key the file's
 // ponds are taken as they are.
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/error.hpp"
+#include "common/log.hpp"
 #include "mpm_stage/scene/scene.hpp"
 
 namespace tailrun::mpm {
@@ -108,8 +108,8 @@ std::vector<Pond> read_ponds(const CaseNode& root, const Scene& scene) {
   }
   if (!ponds.empty()) require_upright(root, scene);
   for (const Pond& pond : ponds)
-    spdlog::info("ponded water '{}': level {:g} m{}", pond.name, pond.level.front(),
-                 pond.level.size() > 1 ? " at the start, by its history" : "");
+    log_info("ponded water '{}': level {:g} m{}", pond.name, pond.level.front(),
+             pond.level.size() > 1 ? " at the start, by its history" : "");
   return ponds;
 }
 

@@ -4,7 +4,8 @@
 #include <array>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -73,11 +74,11 @@ struct TerrainInput {
 // one entry for each material and law that gave it.
 struct StrengthInUse {
   std::string material;
-  std::string from;            // "hand-over", "mpm.json" (chosen again here), or "cohesion" (of the material)
-  nlohmann::ordered_json law;  // with all its inputs; null where it is not known
-  double factor = 1.0;         // 1, on what the law gives
-  StrengthTally found;         // with that factor in the strengths; bounds are counted where the law was chosen here
-  bool has_stress = false;     // whether sigma'_v0 is known
+  std::string from;  // "hand-over", "mpm.json" (chosen again here), or "cohesion" (of the material)
+  std::shared_ptr<const nlohmann::ordered_json> law;  // with all its inputs; null where it is not known
+  double factor = 1.0;                                // 1, on what the law gives
+  StrengthTally found;      // with that factor in the strengths; bounds are counted where the law was chosen here
+  bool has_stress = false;  // whether sigma'_v0 is known
   // Number of particles and sum of sigma'_v0 (Pa) by strength (Pa), of laws that give few; of others it is not
   // complete.
   std::map<double, std::pair<long, double>> steps;
@@ -113,7 +114,9 @@ struct Scene {
 // Reads a scene. `particles_override` takes the place of the case file's "particles_file". Throws InputError.
 Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_override, const std::string& size = {});
 
-// Parts of read_scene, each in its own file.
+// Parts of read_scene, each in its own file. The first two read what chooses a solver.
+int read_dimension(const CaseNode& root);
+void read_scheme(const CaseNode& root, SolverOptions& options);
 Material read_material(const std::string& name, const CaseNode& node, double residual_factor);
 // The case file's "particles" in scene.particles, with the gradients of the velocities that it gives them.
 void generate_particles(const CaseNode& root, const std::vector<Material>& materials, Scene& scene);

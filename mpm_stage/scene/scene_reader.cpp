@@ -1,10 +1,12 @@
 // mpm.json from top to bottom.
-#include <fmt/format.h>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/error.hpp"
+#include "common/json_text.hpp"
 #include "common/plausible_material.hpp"
 #include "common/plausible_state.hpp"
 #include "common/warnings.hpp"
@@ -51,43 +53,6 @@ void read_domain(const CaseNode& root, Scene& scene) {
   walls.leaving = leaving == "error"    ? LeavingParticles::error
                   : leaving == "remove" ? LeavingParticles::remove
                                         : LeavingParticles::wall;
-}
-
-void read_scheme(const CaseNode& root, Scene& scene) {
-  const CaseNode scheme = root.object_or_empty("scheme");
-  SolverOptions& o = scene.solver;
-  const std::string shape = scheme.choice_or("shape_function", {"linear", "quadratic", "cubic", "gimp"}, "quadratic");
-  o.shape = shape == "linear"      ? ShapeName::linear
-            : shape == "quadratic" ? ShapeName::quadratic
-            : shape == "cubic"     ? ShapeName::cubic
-                                   : ShapeName::gimp;
-  const std::string transfer = scheme.choice_or("transfer", {"apic", "aflip", "flip", "fmpm"}, "aflip");
-  o.transfer = transfer == "apic"    ? TransferName::apic
-               : transfer == "aflip" ? TransferName::aflip
-               : transfer == "flip"  ? TransferName::flip
-                                     : TransferName::fmpm;
-  if (o.transfer == TransferName::aflip) {
-    const double flow_share = o.flow_transfer_damping / o.transfer_damping;
-    o.transfer_damping = scheme.number_or("transfer_damping", "1", Range::between(0.0, 10.0), o.transfer_damping);
-    o.flow_transfer_damping =
-        scheme.number_or("flow_transfer_damping", "1", Range::between(0.0, 10.0), flow_share * o.transfer_damping);
-  }
-  if (o.transfer == TransferName::flip)
-    o.flip_share = scheme.number_or("flip_share", "1", Range::between(0.0, 1.0), 0.99);
-  if (o.transfer == TransferName::fmpm)
-    o.fmpm_order = static_cast<int>(scheme.integer_or("fmpm_order", 2, 6, o.fmpm_order));
-  o.volumetric_average = scheme.boolean_or("volumetric_average", true);
-  if (o.volumetric_average)
-    o.crowding_relief = scheme.number_or("crowding_relief", "1", Range::between(0.0, 10.0), o.crowding_relief);
-  o.soil_limits_friction = scheme.boolean_or("soil_limits_friction", true);
-  o.contact_reach = scheme.number_or("contact_reach", "cells", Range::between(0.0, 1.0), o.contact_reach);
-  if (const auto share = scheme.number_if("surface_share", "1", Range::between(0.0, 0.2))) o.surface_share = *share;
-  if (const auto cutoff = scheme.number_if("mass_cutoff", "1", Range::between(0.0, 0.1))) o.mass_cutoff = *cutoff;
-  o.local_damping = root.object_or_empty("damping").number_or("local", "1", Range::between(0.0, 0.99), 0.0);
-  if (o.local_damping > 0.0 && o.transfer == TransferName::fmpm)
-    root.fail("damping/local",
-              "does not go with scheme/transfer 'fmpm', whose velocities after the filter are not those "
-              "that the damping opposes; take another transfer, or 0");
 }
 
 void read_sleep(const CaseNode& root, Scene& scene) {
@@ -331,7 +296,7 @@ void judge(const CaseNode& root, const Scene& scene) {
   const bool straight_down = scene.gravity[0] == 0.0 && scene.gravity[2] == 0.0;
   check_state(columns_of(set, scene.inputs.front().string(), straight_down ? -scene.gravity[1] : 0.0));
   if (const auto note = set.notes.find("warnings"); note != set.notes.end())
-    if (const auto list = nlohmann::json::parse(note->second, nullptr, false); list.is_array())
+    if (const auto list = json_or_null(note->second); list.is_array())
       for (const auto& text : list)
         if (text.is_string()) add_warning("from the hand-over: " + text.get<std::string>());
 }
@@ -340,7 +305,7 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
   const CaseNode root = file.root();
   Scene scene;
   scene.title = root.text_or("title", std::filesystem::absolute(file.path()).parent_path().filename().string());
-  scene.dimension = static_cast<int>(root.integer_or("dimension", 2, 3, 2));
+  scene.dimension = read_dimension(root);
   scene.cell_size = read_cell_size(root, size);
   const auto dimension = static_cast<std::size_t>(scene.dimension);
   std::vector<double> down(dimension, 0.0);
@@ -350,7 +315,7 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
   read_domain(root, scene);
   scene.walls.bodies = read_bodies(root, scene.dimension);
   scene.solver.surface_share = -1.0;
-  read_scheme(root, scene);
+  read_scheme(root, scene.solver);
   read_sleep(root, scene);
   read_time(root, scene);
 

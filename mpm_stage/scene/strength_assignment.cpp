@@ -1,11 +1,14 @@
 // The strength of each particle: what the hand-over gave it or what "residual_strength" of mpm.json chooses again, and
 // the cohesion of its material.
-#include <fmt/format.h>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <map>
 
 #include "common/error.hpp"
+#include "common/json_text.hpp"
+#include "common/residual_strength/strength_law.hpp"
 #include "common/warnings.hpp"
 #include "mpm_stage/scene/scene.hpp"
 
@@ -47,7 +50,7 @@ KeptStrengthLaw kept_law(const Scene& scene, int index) {
             fmt::format("{} has no law of the hand-over for these particles{}", particles_name(scene),
                         set.strength_law.empty() ? " (frames and files of earlier versions keep none)" : "")};
   const std::string place = fmt::format("{}: /tailrun/strength_laws, row {}", particles_name(scene), index);
-  Json record = Json::parse(set.strength_laws[static_cast<std::size_t>(index)], nullptr, false);
+  Json record = json_or_null(set.strength_laws[static_cast<std::size_t>(index)]);
   if (!record.is_object()) throw InputError(place + ": is not a JSON object, as transfer_tool writes it");
   return {std::move(record), place};
 }
@@ -143,7 +146,7 @@ void assign_strength(const CaseFile& file, Scene& scene) {
     if (use.found.count == 0) {
       use.material = m.name;
       use.from = law ? "mpm.json" : m.cohesion_from_particles ? "hand-over" : "cohesion";
-      use.law = law ? law->record : index >= 0 ? kept_law(scene, index).record : Json();
+      if (law || index >= 0) use.law = std::make_shared<const Json>(law ? law->record : kept_law(scene, index).record);
       use.factor = m.cohesion_factor;
       use.has_stress = has_stress;
     }

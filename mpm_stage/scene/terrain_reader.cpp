@@ -1,5 +1,5 @@
 // "terrain" of mpm.json: lines given here or carried in the particles file, with friction by segment.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

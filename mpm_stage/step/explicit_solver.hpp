@@ -10,7 +10,7 @@
 // afterwards, so results do not depend on the number of threads.
 #pragma once
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <chrono>
@@ -35,6 +35,7 @@
 #include "mpm_stage/step/grid_update.hpp"
 #include "mpm_stage/step/sleeping_blocks.hpp"
 #include "mpm_stage/step/solver.hpp"
+#include "mpm_stage/step/solver_list.hpp"
 #include "mpm_stage/transfer/grid_to_particles.hpp"
 #include "mpm_stage/transfer/interface_sums.hpp"
 #include "mpm_stage/transfer/mass_matrix.hpp"
@@ -443,32 +444,25 @@ class ExplicitSolver final : public Solver<Dim> {
 
 namespace tailrun::mpm {
 
-template <int Dim, class Shape>
-std::unique_ptr<Solver<Dim>> make_solver_of_shape(const SolverOptions& options, double cell_size,
-                                                  std::array<double, Dim> origin, Particles<Dim> particles,
-                                                  const std::vector<Material>& materials, const Terrain& terrain,
-                                                  const Walls<Dim>& walls) {
-  const auto make = [&]<bool Split, TransferName Transfer>() -> std::unique_ptr<Solver<Dim>> {
-    return std::make_unique<ExplicitSolver<Dim, Shape, Split, Transfer>>(
-        options, cell_size, origin, std::move(particles), materials, terrain, walls);
-  };
-  switch (options.transfer) {
-    case TransferName::flip:
-      return make.template operator()<true, TransferName::flip>();
-    case TransferName::aflip:
-      return make.template operator()<true, TransferName::aflip>();
-    case TransferName::fmpm:
-      return make.template operator()<false, TransferName::fmpm>();
-    case TransferName::apic:
-      break;
-  }
-  return options.local_damping > 0.0 ? make.template operator()<true, TransferName::apic>()
-                                     : make.template operator()<false, TransferName::apic>();
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+std::unique_ptr<Solver<Dim>> make_one_solver(const SolverOptions& options, double cell_size,
+                                             std::array<double, Dim> origin, Particles<Dim> particles,
+                                             const std::vector<Material>& materials, const Terrain& terrain,
+                                             const Walls<Dim>& walls) {
+  return std::make_unique<ExplicitSolver<Dim, Shape, Split, Transfer>>(options, cell_size, origin, std::move(particles),
+                                                                       materials, terrain, walls);
 }
 
-#define TAILRUN_MPM_INSTANTIATE(Dim, Shape)                                                                \
-  template std::unique_ptr<Solver<Dim>> make_solver_of_shape<Dim, Shape>(                                  \
+// The solver of one combination, and those of a dimension and shape function.
+#define TAILRUN_MPM_SOLVER(Dim, Shape, Split, Transfer)                                                    \
+  template std::unique_ptr<Solver<Dim>> make_one_solver<Dim, Shape, Split, TransferName::Transfer>(        \
       const SolverOptions&, double, std::array<double, Dim>, Particles<Dim>, const std::vector<Material>&, \
       const Terrain&, const Walls<Dim>&);
+#define TAILRUN_MPM_SOLVERS(Dim, Shape)       \
+  TAILRUN_MPM_SOLVER(Dim, Shape, true, flip)  \
+  TAILRUN_MPM_SOLVER(Dim, Shape, true, aflip) \
+  TAILRUN_MPM_SOLVER(Dim, Shape, false, fmpm) \
+  TAILRUN_MPM_SOLVER(Dim, Shape, true, apic)  \
+  TAILRUN_MPM_SOLVER(Dim, Shape, false, apic)
 
 }  // namespace tailrun::mpm

@@ -1,5 +1,6 @@
 // One explicit step of the material point method, as the run loop sees it. The implementation (explicit_solver.hpp) is
-// compiled for each combination of dimension, shape function and transfer; the scene picks one at set-up.
+// compiled for each combination of dimension, shape function and transfer (solver_list.hpp); the scene picks one at
+// set-up.
 #pragma once
 
 #include <array>
@@ -155,8 +156,12 @@ class Solver {
   virtual long sorts() const = 0;
 };
 
+// Whether this program is linked to the solver of these options: to every one (all_solvers.cpp), or to the one that
+// dams' runouts take (main_solver.cpp).
+bool has_solver(int dimension, const SolverOptions& options);
+
 // The particles are moved into the solver. `materials` are in the order of the particles' material numbers; `origin` is
-// a node (m). `terrain` must outlive the solver.
+// a node (m). `terrain` must outlive the solver. Only where has_solver.
 template <int Dim>
 std::unique_ptr<Solver<Dim>> make_solver(const SolverOptions& options, double cell_size, std::array<double, Dim> origin,
                                          Particles<Dim> particles, const std::vector<Material>& materials,

@@ -1,9 +1,11 @@
-// The explicit solver in 2-D with quadratic shape functions; a file of its own so that they compile side by side.
-#include "mpm_stage/grid/shape_functions.hpp"
+// The explicit solvers in 2-D with quadratic shape functions but for the one in solver_2d_quadratic_aflip.cpp.
 #include "mpm_stage/step/explicit_solver.hpp"
 
 namespace tailrun::mpm {
 
-TAILRUN_MPM_INSTANTIATE(2, QuadraticShape)
+TAILRUN_MPM_SOLVER(2, QuadraticShape, true, flip)
+TAILRUN_MPM_SOLVER(2, QuadraticShape, false, fmpm)
+TAILRUN_MPM_SOLVER(2, QuadraticShape, true, apic)
+TAILRUN_MPM_SOLVER(2, QuadraticShape, false, apic)
 
 }  // namespace tailrun::mpm

@@ -1,9 +1,8 @@
-// The explicit solver in 3-D with linear shape functions; a file of its own so that they compile side by side.
-#include "mpm_stage/grid/shape_functions.hpp"
+// The explicit solvers in 3-D with linear shape functions; a file of its own so that they compile side by side.
 #include "mpm_stage/step/explicit_solver.hpp"
 
 namespace tailrun::mpm {
 
-TAILRUN_MPM_INSTANTIATE(3, LinearShape)
+TAILRUN_MPM_SOLVERS(3, LinearShape)
 
 }  // namespace tailrun::mpm

@@ -1,12 +1,14 @@
 #include "transfer_tool/assign/rules.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "common/error.hpp"
+#include "common/json_text.hpp"
 #include "common/residual_strength/strength_tally.hpp"
 
 namespace tailrun::transfer {
@@ -159,7 +161,7 @@ Assignment assign(const Snapshot& snapshot, const SamplePoints& points, const Po
   for (const auto& rule : rules) {
     id_of_rule.push_back(material(rule.material));
     law_of_rule.push_back(rule.strength ? static_cast<std::int32_t>(result.strength_laws.size()) : -1);
-    if (rule.strength) result.strength_laws.push_back(rule.strength->record.dump());
+    if (rule.strength) result.strength_laws.push_back(text_of_json(rule.strength->record));
   }
 
   std::vector<StrengthTally> tallies(rules.size());

@@ -1,10 +1,12 @@
 #include "transfer_tool/assign/strength_table.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
 #include "common/error.hpp"
+#include "common/json_text.hpp"
 
 namespace tailrun::transfer {
 namespace {
@@ -78,7 +80,7 @@ std::string quoted(const std::string& text) {
 std::string inputs_of(const Json& record) {
   std::string text;
   for (const auto& [key, value] : record.items())
-    text += key == "model" ? value.get<std::string>() : fmt::format(", {} {}", key, value.dump());
+    text += key == "model" ? value.get<std::string>() : fmt::format(", {} {}", key, text_of_json(value));
   return text;
 }
 

@@ -1,6 +1,7 @@
 #include "transfer_tool/audit/audit.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // forms and a 3 x 3 rule over the elements, not the sampling points).
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

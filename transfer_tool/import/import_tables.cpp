@@ -1,6 +1,6 @@
 #include "transfer_tool/import/import_tables.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

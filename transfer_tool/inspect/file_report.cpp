@@ -1,13 +1,15 @@
 #include "transfer_tool/inspect/file_report.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/error.hpp"
 #include "common/hdf5_file.hpp"
+#include "common/json_text.hpp"
 
 namespace tailrun::transfer {
 namespace {
@@ -217,8 +219,8 @@ nlohmann::ordered_json report_json(const FileReport& report) {
         {{"name", group.name}, {"count", group.count}, {"mass_kg", group.mass}});
   for (const auto& [name, rows] : report.polylines) json["lines"].push_back({{"name", name}, {"rows", rows}});
   for (const auto& [name, note] : report.notes) {
-    const auto parsed = nlohmann::ordered_json::parse(note, nullptr, false);
-    json["notes"][name] = parsed.is_discarded() ? nlohmann::ordered_json(note) : parsed;
+    const auto parsed = json_or_null(note);
+    json["notes"][name] = parsed.is_null() ? nlohmann::ordered_json(note) : parsed;
   }
   for (const auto& [name, shape] : report.other) json["other"].push_back({{"name", name}, {"shape", shape}});
   for (const auto& field : report.fields)

@@ -1,6 +1,6 @@
 #include "transfer_tool/map/map_state.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "transfer_tool/options/transfer_case.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace tailrun::transfer {
 namespace {

@@ -1,6 +1,6 @@
 #include "transfer_tool/sample/pond_reach.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>

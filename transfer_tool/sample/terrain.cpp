@@ -1,6 +1,6 @@
 #include "transfer_tool/sample/terrain.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

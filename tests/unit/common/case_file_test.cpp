@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "common/application.hpp"
 #include "common/error.hpp"
 
 using namespace tailrun;
@@ -39,6 +40,34 @@ TEST_CASE("values, defaults and the echo") {
   CHECK(file.root().texts_or("names", {}).size() == 2);
   CHECK_NOTHROW(file.finish());
   CHECK(file.echo()[1] == "newmark/beta = 0.25  (default)");
+}
+
+TEST_CASE("of the options those are told that differ from their defaults; the file beside the results has all") {
+  const CaseFile file =
+      written(R"({"dt": 0.01, "gamma": 0.5, "kind": "fixed", "title": "a, default: b", "points": [1, 2], "on": true})");
+  const CaseNode root = file.root();
+  root.number("dt", "s", Range::positive());                 // required: has no default
+  root.number_or("gamma", "1", Range::positive(), 0.5);      // given, and the default
+  root.number_or("beta", "1", Range::positive(), 0.25);      // not given
+  root.choice_or("kind", {"open", "fixed"}, "open");         // given, another
+  root.text_or("title", "");                                 // given, a text that has no default
+  root.numbers_or("points", "m", Range::any(), {1.0, 2.0});  // given, and the default
+  root.boolean_or("on", false);                              // given, another
+  const auto told = differing_options(file.echo());
+  REQUIRE(told.size() == 2);
+  CHECK(told[0] == "kind = fixed  (default: open)");
+  CHECK(told[1] == "on = true  (default: false)");
+
+  const auto place = std::filesystem::temp_directory_path() / "tailrun_case_test.options.txt";
+  write_options(place, "program run case.json", file.echo());
+  std::ifstream stream(place);
+  std::string line;
+  std::vector<std::string> lines;
+  while (std::getline(stream, line)) lines.push_back(line);
+  REQUIRE(lines.size() == 8);
+  CHECK(lines[0] == "program run case.json");
+  for (std::size_t k = 0; k < 7; ++k) CHECK(lines[k + 1] == "  " + file.echo()[k]);
+  std::filesystem::remove(place);
 }
 
 TEST_CASE("an unknown key names its pointer and the nearest known one") {

@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "common/error.hpp"
+#include "common/json_text.hpp"
 #include "fem_stage/mesh/gmsh_mesh.hpp"
 #include "fem_stage/output/state_file.hpp"
 #include "fem_stage/stage/geostatic.hpp"
@@ -111,6 +113,20 @@ TEST_CASE("a shake that was interrupted twice and went on leaves the bytes of on
   CHECK(parts.ledger.hourglass_work == whole.ledger.hourglass_work);
   CHECK(parts.counts.iterations == whole.counts.iterations);
   CHECK(parts.liquefaction == whole.liquefaction);
+}
+
+TEST_CASE("ParaView's index names every snapshot beside it, with its time") {
+  const fs::path case_file = liquefying_column();
+  const auto report = Run(case_file).shake(place / "indexed");
+  const auto index = parse_json("index", bytes_of(place / "indexed" / "snapshots.vtkhdf.series"));
+  CHECK(index.at("file-series-version") == "1.0");
+  REQUIRE(index.at("files").size() == report.snapshots.size());
+  for (std::size_t k = 0; k < report.snapshots.size(); ++k) {
+    const auto& entry = index.at("files").at(k);
+    CHECK(entry.at("name") == report.snapshots[k]);
+    CHECK(fs::exists(place / "indexed" / entry.at("name").get<std::string>()));
+    CHECK(entry.at("time").get<double>() == doctest::Approx(std::vector<double>{0.25, 0.5, 1.0, 1.5, 2.0}.at(k)));
+  }
 }
 
 TEST_CASE("checkpoints on the way change nothing") {

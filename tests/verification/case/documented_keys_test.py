@@ -13,10 +13,7 @@ PAGES = {
                     "fem_stage/model/liquefied_strength.cpp",
                     "fem_stage/material/*.?pp", "fem_stage/element_test/element_test_case.cpp",
                     "fem_stage/element_test/calibration.cpp"],
-    "docs/mpm.md": ["mpm_stage/scene/scene_reader.cpp", "mpm_stage/scene/material_reader.cpp",
-                    "mpm_stage/scene/terrain_reader.cpp", "mpm_stage/scene/particle_generator.cpp",
-                    "mpm_stage/scene/body_reader.cpp", "mpm_stage/scene/contact_reader.cpp", "mpm_stage/material/*.cpp",
-                    "common/residual_strength/*.cpp"],
+    "docs/mpm.md": ["mpm_stage/scene/*.cpp", "mpm_stage/material/*.cpp", "common/residual_strength/*.cpp"],
     "docs/transfer.md": ["transfer_tool/options/transfer_case.cpp", "common/residual_strength/*.cpp"],
 }
 READERS = ("number|number_or|number_if|integer|integer_or|boolean_or|text|text_or|texts_or|choice|choice_or|numbers|numbers_or|"
