@@ -1,6 +1,7 @@
 #include "common/case_settings.hpp"
 
 #include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
 
 #include <fstream>
 

@@ -1,6 +1,7 @@
 #include "common/residual_strength/strength_law.hpp"
 
 #include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
 
 #include <unistd.h>
 

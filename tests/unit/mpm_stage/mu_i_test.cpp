@@ -1,6 +1,7 @@
 // mu(I): at rest Mohr-Coulomb, in flow Jop, Forterre & Pouliquen's friction, whatever the step.
 #include <doctest/doctest.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>

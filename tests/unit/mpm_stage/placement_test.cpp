@@ -1,6 +1,7 @@
 // Scenes whose particles cannot be where they are put: refused, or remarked on, with the count and the place.
 #include <doctest/doctest.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <filesystem>

@@ -1,6 +1,7 @@
 #include "transfer_tool/assign/rules.hpp"
 
 #include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
 
 #include "common/error.hpp"
 #include "example_mesh.hpp"
