@@ -1,6 +1,7 @@
 #include "mpm_stage/output/section_series.hpp"
 
 #include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
 
 using namespace tailrun;
 using namespace tailrun::mpm;

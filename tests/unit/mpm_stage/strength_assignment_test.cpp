@@ -1,6 +1,7 @@
 // "residual_strength" of mpm.json: strengths of the hand-over as they are, times a factor, or chosen again.
 #include <doctest/doctest.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <filesystem>
