@@ -77,7 +77,7 @@ TEST_CASE("strengths are the hand-over's, times the factor") {
   REQUIRE(half.strengths.size() == 1);
   CHECK(half.strengths[0].material == "liquefied");
   CHECK(half.strengths[0].from == "hand-over");
-  CHECK(half.strengths[0].law["blow_count"] == 6);
+  CHECK((*half.strengths[0].law)["blow_count"] == 6);
   CHECK(half.strengths[0].factor == 0.5);
   CHECK(half.strengths[0].found.count == 3);
   CHECK(half.strengths[0].found.stress.most == 100e3);
@@ -100,7 +100,7 @@ TEST_CASE("another model acts by each particle's sigma'_v0, and the factor multi
   for (std::size_t k = 0; k < 3; ++k)
     CHECK(scene.cohesion[k] == doctest::Approx(0.8 * kramer_wang_2015(6, stresses[k], z)).epsilon(1e-14));
   CHECK(scene.cohesion[3] == 0.0);
-  CHECK(scene.strengths.at(0).law["model"] == "kramer_wang");
+  CHECK((*scene.strengths.at(0).law)["model"] == "kramer_wang");
 }
 
 TEST_CASE("a particles file without laws takes a model that is given in full") {
