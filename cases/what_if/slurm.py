@@ -91,5 +91,5 @@ def submit(arguments, folder, units, command, threads, gather):
               "without SUBMIT=slurm it computes here.", file=sys.stderr)
         return 1
     write_json(folder / "slurm.json", {"jobs": jobs})
-    print(f"Followed by: squeue --job={','.join(jobs)}; what failed or is missing is queued again, alone, by the same command")
+    print(f"Followed by: squeue --job={','.join(jobs)}; the same command queues what is missing, with RETRY=1 what failed, too, and nothing else")
     return 0

@@ -63,7 +63,7 @@ centre = np.stack(np.meshgrid(np.arange(0.5, 20), np.arange(0.5, 4)), -1).reshap
 slid = np.where(centre[:, :1] > 10, [[7.3, 0.0]], [[0.0, 0.0]])
 bed = {"bed": np.array([[-50.0, 0.0], [100.0, 0.0]]), "wall": np.array([[-1.0, 0.0], [-1.2, 9.0]])}
 first, last = (types.SimpleNamespace(position=centre + move, size=1.0, terrain=bed, time=8.0, data={
-    "displacement": 5.0 + move, "volume": np.ones(len(centre))}) for move in (0.0 * slid, slid))
+    "displacement": 5.0 + move, "volume": np.ones(len(centre)), "mass": np.full(len(centre), 1900.0)}) for move in (0.0 * slid, slid))
 run = flow.of_particles(first, last)
 assert np.isclose(run.released_volume, 40) and np.isclose(run.depth.sum() * run.width, 40) and run.width == 4.0
 assert np.isclose(run.depth[run.x == 22.0], 4.0) and np.allclose(run.bed, 0.0) and np.nanmax(run.surface) == 4.0

@@ -39,9 +39,9 @@ with tempfile.TemporaryDirectory() as name:
         def said(*words):
             return subprocess.run(words, env=environment, capture_output=True, text=True).stdout
 
-        def submit(status=0):
+        def submit(*words):
             """What make said, and what was computed."""
-            result, _ = there.make("sweep-files", "SUBMIT=slurm", status=status)
+            result, _ = there.make("sweep-files", "SUBMIT=slurm", *words, status=0)
             local_slurm.wait_for(lambda: not said("squeue", "--noheader").strip(), lambda: said("squeue"), 120)
             return result, sorted(line for line in there.log.read_text().split("\n") if line)
 
@@ -51,13 +51,13 @@ with tempfile.TemporaryDirectory() as name:
         assert result.stdout.count("  job ") == 6 and "4 tasks, 4 x mpm" in result.stdout, result.stdout
         assert len(ran) == 8 and table(here) == table(there) and table(here, "members.h5") == table(there, "members.h5"), (ran, result.stdout)
 
-        # What failed and what is new is queued, in one array; the rest is not.
+        # What is new is queued, with RETRY=1 what failed, too, in one array; the rest is not.
         grown = copy.deepcopy(FACTORS)
         grown["parameters"]["factor"]["values"] += [4.0, 1.5]
         sweep(grown)
         here.make("sweep-files", status=2)
-        for _ in range(2):
-            result, ran = submit()
+        for retry in ((), ("RETRY=1",)):
+            result, ran = submit(*retry)
             assert ran[-1].endswith("=4.0") and result.stdout.count("  job ") == 2, (ran, result.stdout)
         assert table(here) == table(there) and b"energy grows" in table(there, "failed.csv")
 
