@@ -71,7 +71,7 @@ void read_sleep(const CaseNode& root, Scene& scene) {
 // Splines carry particles that are alone on their nodes between others; elsewhere they bear longer steps.
 void warn_of_long_steps(const Scene& scene) {
   const SolverOptions& o = scene.solver;
-  const double longest = longest_courant(QuadraticShape::largest_stiffness, 2);
+  const double longest = longest_courant<QuadraticShape>(2);
   if (o.shape != ShapeName::quadratic || o.fields.count < 2 || o.courant <= longest) return;
   add_warning(fmt::format(
       "time/courant is {}: steps longer than {} let single particles between other soil swing ever more, until "
@@ -82,8 +82,8 @@ void warn_of_long_steps(const Scene& scene) {
 // With linear functions and GIMP any particle at a body's side may be all but alone on a node.
 double read_courant(const CaseNode& time, ShapeName shape, int dimension, double usual) {
   double longest = 1e30;
-  if (shape == ShapeName::linear) longest = longest_courant(LinearShape::largest_stiffness, dimension);
-  if (shape == ShapeName::gimp) longest = longest_courant(GimpShape::largest_stiffness, dimension);
+  if (shape == ShapeName::linear) longest = longest_courant<LinearShape>(dimension);
+  if (shape == ShapeName::gimp) longest = longest_courant<GimpShape>(dimension);
   const double courant = time.number_or("courant", "1", {0.0, 1.5, true, false}, std::min(usual, longest));
   if (courant <= longest) return courant;
   add_warning(fmt::format(

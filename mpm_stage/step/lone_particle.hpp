@@ -2,19 +2,21 @@
 //
 // A particle that no other shares its nodes with, as it flies, at a corner or in a velocity field of few particles,
 // breathes on them. Its strain follows the nodes' velocities after their own forces, so with S = sum (w')^2 / w and the
-// modulus M of equal strain in all directions, up to Dim rho c^2, that grows from M dt^2 / (rho h^2) = 2 / (S - 2) on:
-// dt = sqrt(2 / (Dim (S - 2))) h / c at the worst place in a cell.
-//
-// So it is with quadratic splines (0.55 grows, see the tests); linear functions and GIMP bear up to twice that.
+// modulus M of equal strain in all directions, up to Dim rho c^2, that grows from
+//   M dt^2 / (rho h^2) = 4 / S           where particles carry the velocity's gradient (linear functions, GIMP),
+//                        2 / (S - 2)     where they carry the affine velocity of B-splines
+// on, at the worst place in a cell.
 #pragma once
 
 #include <cmath>
 
 namespace tailrun::mpm {
 
-// 1, of h / c, in `dimension` directions; S as the shape function says (largest_stiffness in shape_functions.hpp).
-inline double longest_courant(double S, int dimension) {
-  return std::sqrt(2.0 / (dimension * (S - 2.0)));
+// 1, of h / c, with a shape function of shape_functions.hpp in `dimension` directions.
+template <class Shape>
+double longest_courant(int dimension) {
+  constexpr double S = Shape::largest_stiffness;
+  return std::sqrt((Shape::apic > 0.0 ? 2.0 / (S - 2.0) : 4.0 / S) / dimension);
 }
 
 }  // namespace tailrun::mpm
