@@ -35,7 +35,7 @@
 #include "mpm_stage/step/grid_update.hpp"
 #include "mpm_stage/step/sleeping_blocks.hpp"
 #include "mpm_stage/step/solver.hpp"
-#include "mpm_stage/step/solver_list.hpp"
+#include "mpm_stage/step/surface_age.hpp"
 #include "mpm_stage/transfer/grid_to_particles.hpp"
 #include "mpm_stage/transfer/interface_sums.hpp"
 #include "mpm_stage/transfer/mass_matrix.hpp"
@@ -110,7 +110,7 @@ class ExplicitSolver final : public Solver<Dim> {
 
   void resume(Particles<Dim> particles, const SolverState<Dim>& s) override;
   SolverState<Dim> state() const override;
-  bool resumable() const override { return !fields_.several() || surfaces_due_; }
+  bool resumable() const override { return !fields_.several() || surface_age_.due(); }
 
   StepReport step(const std::array<double, Dim>& body, const std::array<double, Dim>& inertial, double limit) override {
     StepReport report;
@@ -121,14 +121,16 @@ class ExplicitSolver final : public Solver<Dim> {
     if (sleep_.active() && water_.moves(time_ + dt)) sleep_.wake_all();
     update_grid(dt, body, inertial);
     if constexpr (Transfer == TransferName::fmpm) filter_velocity(dt);
+    const double drifted = drift_;
     gather(dt, report);
+    const double drift = drift_ - drifted;
     if (drift_ > largest_drift || leaving_ || water_.outdated(h_)) {
       sort();
       report.sorted = true;
     }
     next_dt_ = longest_step(limit);
     report.next_dt = next_dt_;
-    if (fields_.several()) mind_surfaces(step_drift_, report.sorted);
+    if (fields_.several()) surface_age_.pass(drift, report.sorted);
     if (averaging_) average(report.sorted);
     if (water_.any()) water_.set_time(time_ + dt);
     update_stresses(dt);
@@ -311,7 +313,6 @@ class ExplicitSolver final : public Solver<Dim> {
   NodeBodies bodies_at(std::size_t a, int n, unsigned there, const NodeSums* node) const;
   void set_motion(std::size_t node, BodyAtNode<Dim>& body) const;
   void join_sides(std::size_t a, int n, const NodeSums* node, GridSums<Dim>& sums);
-  void mind_surfaces(double drift, bool sorted);
   void gather_interfaces();
   void smooth_surfaces();
   SurfaceAround<Dim> surface_around(int f, std::size_t a, int n) const;
@@ -389,10 +390,8 @@ class ExplicitSolver final : public Solver<Dim> {
   AlignedVector<Vec4> surfaces_;                  // the same: size and directions, around the node
   // Of a node: whether fields met there in the last step, and whether their surfaces are known.
   enum Meeting : std::uint8_t { not_met, met, surface_known };
-  std::vector<std::uint8_t> meeting_;              // Meeting, per active block; several fields
-  double step_drift_ = 0.0, surface_drift_ = 0.0;  // cells, in this step and since surfaces were found
-  int surface_age_ = 0;                            // steps since then
-  bool surfaces_due_ = true;                       // to be found from the particles' places as they are
+  std::vector<std::uint8_t> meeting_;  // Meeting, per active block; several fields
+  SurfaceAge surface_age_;
   HalfSpaces<Shape> half_spaces_;
   // Per pair of fields and per block that several fields reach.
   std::vector<FieldGrip<Dim>> field_grip_;
@@ -441,28 +440,3 @@ class ExplicitSolver final : public Solver<Dim> {
 #include "mpm_stage/step/field_surfaces.hpp"
 #include "mpm_stage/step/grid_phase.hpp"
 #include "mpm_stage/step/mass_filter.hpp"
-
-namespace tailrun::mpm {
-
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-std::unique_ptr<Solver<Dim>> make_one_solver(const SolverOptions& options, double cell_size,
-                                             std::array<double, Dim> origin, Particles<Dim> particles,
-                                             const std::vector<Material>& materials, const Terrain& terrain,
-                                             const Walls<Dim>& walls) {
-  return std::make_unique<ExplicitSolver<Dim, Shape, Split, Transfer>>(options, cell_size, origin, std::move(particles),
-                                                                       materials, terrain, walls);
-}
-
-// The solver of one combination, and those of a dimension and shape function.
-#define TAILRUN_MPM_SOLVER(Dim, Shape, Split, Transfer)                                                    \
-  template std::unique_ptr<Solver<Dim>> make_one_solver<Dim, Shape, Split, TransferName::Transfer>(        \
-      const SolverOptions&, double, std::array<double, Dim>, Particles<Dim>, const std::vector<Material>&, \
-      const Terrain&, const Walls<Dim>&);
-#define TAILRUN_MPM_SOLVERS(Dim, Shape)       \
-  TAILRUN_MPM_SOLVER(Dim, Shape, true, flip)  \
-  TAILRUN_MPM_SOLVER(Dim, Shape, true, aflip) \
-  TAILRUN_MPM_SOLVER(Dim, Shape, false, fmpm) \
-  TAILRUN_MPM_SOLVER(Dim, Shape, true, apic)  \
-  TAILRUN_MPM_SOLVER(Dim, Shape, false, apic)
-
-}  // namespace tailrun::mpm

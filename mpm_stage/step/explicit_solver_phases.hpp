@@ -79,7 +79,6 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather(double dt, StepReport& 
   if constexpr (Split) work_.transfer += kinetic_ - gathered + nodes_gain_;
   kinetic_ = report.kinetic_energy;
   drift_ += far * h1_;
-  step_drift_ = far * h1_;
   add_time(seconds_.grid_to_particles, since);
 }
 
@@ -152,7 +151,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses(double dt) {
       if (sleep_.stale(b)) {
         sleep_.put_on_nodes(b);
         scatter_block(b);
-      } else if (surfaces_due_ && fields_.near_shared(b)) {
+      } else if (surface_age_.due() && fields_.near_shared(b)) {
         scatter_interfaces(b);
       }
       continue;
@@ -223,7 +222,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::scatter_block(std::size_t b) {
     if (water_.any())
       water_.template scatter<Shape, Split>(grid_, b, next_dt_, corner(b), P_, span.begin, span.end, tile, beside);
   });
-  if (surfaces_due_ && fields_.near_shared(b)) scatter_interfaces(b);
+  if (surface_age_.due() && fields_.near_shared(b)) scatter_interfaces(b);
   if (ground_.any()) scatter_ground_gaps(b);
 }
 

@@ -1,26 +1,10 @@
 // The surfaces of the materials in each velocity field, for contact between them; included by explicit_solver.hpp.
-//
-// They change as particles move, by a few hundredths of a cell in a step at most, and cost a third of it, so they are
-// found again when a particle may have moved by `most_surface_drift` since, every `most_surface_age` steps, and after a
-// sort.
 #pragma once
 
 #include "mpm_stage/grid/binomial_sums.hpp"
 #include "mpm_stage/step/explicit_solver.hpp"
 
 namespace tailrun::mpm {
-
-// Whether surfaces are to be found again with the particles' places after this step.
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::mind_surfaces(double drift, bool sorted) {
-  constexpr double most_surface_drift = 0.05;  // cells; contact tells gaps of 0.15 cells from none
-  constexpr int most_surface_age = 8;          // steps
-  surface_drift_ += drift;
-  surfaces_due_ = sorted || surface_drift_ > most_surface_drift || ++surface_age_ >= most_surface_age;
-  if (!surfaces_due_) return;
-  surface_drift_ = 0.0;
-  surface_age_ = 0;
-}
 
 // The surfaces of the materials in block b, for contact: of particles that reach nodes at which fields met in the last
 // step. A node where they meet for the first time has a trace of the one, and waits for the next time.

@@ -12,7 +12,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
   const auto since = Clock::now();
   const Drive drive = drive_of(dt, body, inertial);
   if (needs_all_sums()) complete_sums();
-  if (fields_.several() && surfaces_due_) {
+  if (fields_.several() && surface_age_.due()) {
     gather_interfaces();
     smooth_surfaces();
   }

@@ -21,9 +21,7 @@ std::unique_ptr<Solver<Dim>> make_solver(const SolverOptions& options, double ce
   throw std::logic_error("this program has no such solver");
 }
 
-template std::unique_ptr<Solver<2>> make_solver<2>(const SolverOptions&, double, std::array<double, 2>, Particles<2>,
-                                                   const std::vector<Material>&, const Terrain&, const Walls<2>&);
-template std::unique_ptr<Solver<3>> make_solver<3>(const SolverOptions&, double, std::array<double, 3>, Particles<3>,
-                                                   const std::vector<Material>&, const Terrain&, const Walls<3>&);
+TAILRUN_MPM_MAKE_SOLVER(2)
+TAILRUN_MPM_MAKE_SOLVER(3)
 
 }  // namespace tailrun::mpm

@@ -1,5 +1,5 @@
 // The explicit solvers in 2-D with quadratic shape functions but for the one in solver_2d_quadratic_aflip.cpp.
-#include "mpm_stage/step/explicit_solver.hpp"
+#include "mpm_stage/step/one_solver.hpp"
 
 namespace tailrun::mpm {
 

@@ -1,5 +1,5 @@
 // The explicit solver that dams' runouts take when their case asks for no other: 2-D, quadratic B-splines, AFLIP.
-#include "mpm_stage/step/explicit_solver.hpp"
+#include "mpm_stage/step/one_solver.hpp"
 
 namespace tailrun::mpm {
 

@@ -1,5 +1,5 @@
 // The explicit solvers in 3-D with quadratic shape functions; a file of its own so that they compile side by side.
-#include "mpm_stage/step/explicit_solver.hpp"
+#include "mpm_stage/step/one_solver.hpp"
 
 namespace tailrun::mpm {
 

@@ -4,9 +4,7 @@ input, and what cannot be drawn is refused.
 Usage: curves_test.py SOURCE_FOLDER
 """
 
-import copy
 import csv
-import json
 import os
 import pathlib
 import statistics
@@ -19,7 +17,6 @@ source = pathlib.Path(sys.argv[1])
 sys.path.insert(0, str(source / "cases" / "what_if"))
 import paths  # noqa: E402, F401
 import curve_figures  # noqa: E402
-import design  # noqa: E402
 import headline  # noqa: E402
 import members_table  # noqa: E402
 
@@ -40,15 +37,7 @@ with tempfile.TemporaryDirectory() as name:
     clone = Clone(f"{name}/clone", source, fails_above=1.5)
 
     def refused(change):
-        content = copy.deepcopy(GRID)
-        change(content)
-        path = pathlib.Path(name) / "grid.json"
-        path.write_text(json.dumps(content))
-        try:
-            design.read_design(path, clone.case)
-        except design.DesignError as error:
-            return str(error)
-        raise AssertionError(f"{content} was taken")
+        return clone.refusal(GRID, change)
 
     for change, words in ((lambda c: c["curves"].update(over="factr"), "Did you mean 'factor'?"),
                           (lambda c: c["curves"].update(over="shape"), "no list of numbers"),

@@ -3,6 +3,8 @@
 mpm_stage's runout is 10 m / factor at the default size, and changes with the cell's size by 4 m / factor each metre. It refuses a negative factor, fails above `fails_above`, and waits `slow` seconds.
 """
 
+import copy
+import json
 import os
 import pathlib
 import shutil
@@ -83,9 +85,21 @@ class Clone:
         assert status is None or result.returncode == status, (words, result.returncode, result.stdout, result.stderr)
         return result, sorted(line for line in self.log.read_text().split("\n") if line)
 
-    def sweep_file(self, content, name="sweep"):
-        import json
+    def refusal(self, content, change):
+        """Why a design like `content`, after change(content), is not taken; cases/what_if has to be on the path."""
+        import design
 
+        content = copy.deepcopy(content)
+        change(content)
+        path = self.root / "refused.json"
+        path.write_text(json.dumps(content))
+        try:
+            design.read_design(path, self.case)
+        except design.DesignError as error:
+            return str(error)
+        raise AssertionError(f"{content} was taken")
+
+    def sweep_file(self, content, name="sweep"):
         (self.case / f"{name}.json").write_text(json.dumps(content))
 
 

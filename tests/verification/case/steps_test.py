@@ -4,7 +4,6 @@ the main case end at the cases that they say.
 Usage: steps_test.py SOURCE_FOLDER
 """
 
-import copy
 import csv
 import json
 import pathlib
@@ -49,15 +48,7 @@ with tempfile.TemporaryDirectory() as name:
     clone = Clone(f"{name}/clone", source, fails_above=3.0)
 
     def refused(change):
-        content = copy.deepcopy(WAY)
-        change(content)
-        path = pathlib.Path(name) / "way.json"
-        path.write_text(json.dumps(content))
-        try:
-            design.read_design(path, clone.case)
-        except design.DesignError as error:
-            return str(error)
-        raise AssertionError(f"{content} was taken")
+        return clone.refusal(WAY, change)
 
     for change, words in ((lambda c: c["steps"].append({"name": "weak, fast", "set": {"mpm:/a": 1}}), "is there twice"),
                           (lambda c: c["steps"].append({"name": "x", "set": {"mmp:/a": 1}}), "Did you mean 'mpm:'?"),
