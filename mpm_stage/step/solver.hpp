@@ -35,9 +35,10 @@ struct SolverOptions {
   // 1, share of APIC in the AFLIP blend over the time that the fastest wave takes through a cell: what the transfer
   // takes from motion under the grid's resolution then does not depend on the time step.
   double transfer_damping = 0.3;
-  // The same for phi = 0 soil and fluids. Where they flow, damping acts as a viscosity beside their own; and they need
-  // less of it, for what they dissipate themselves takes the noise along.
-  double flow_transfer_damping = 0.05;
+  // The same for phi = 0 soil and fluids. Where they flow, damping acts as a viscosity beside their own, most of all in
+  // a band two cells thick (softened_band); and they need less of it, for what they dissipate themselves takes the
+  // noise along. Without any, a flow does not come to rest.
+  double flow_transfer_damping = 0.01;
   int fmpm_order = 4;  // terms of the full mass matrix's inverse (mass_filter.hpp); 1 is PIC
   bool volumetric_average = true;
   // 1, share of a patch's crowding that goes with a unit of shear strain (patch_filling.hpp).
