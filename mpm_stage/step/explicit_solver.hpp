@@ -209,6 +209,7 @@ class ExplicitSolver final : public Solver<Dim> {
   struct NodeBodies {
     std::array<BodyAtNode<Dim>, most_fields> body;
     std::array<int, most_fields> of_field{-1, -1, -1, -1};
+    std::array<int, most_fields> field{};  // of each body, the first one
     int count = 0;
   };
 
@@ -284,6 +285,8 @@ class ExplicitSolver final : public Solver<Dim> {
             static_cast<std::size_t>(fields_.shared_number(a))) *
            block_nodes;
   }
+  // Of active block a, which several fields reach: node 0 in known_meeting_.
+  std::size_t known_of(std::size_t a) const { return static_cast<std::size_t>(fields_.shared_number(a)) * block_nodes; }
   void limit_volumes();
   void sort();
   void lay_out();
@@ -310,13 +313,15 @@ class ExplicitSolver final : public Solver<Dim> {
   void touch_boundaries(int f, std::size_t a, const Drive& drive, const NodeSums& node, const NodeGaps& gap,
                         const NodeFields& settled, GridSums<Dim>& sums);
   unsigned fields_at(std::size_t a, int n, const NodeSums* node) const;
-  NodeBodies bodies_at(std::size_t a, int n, unsigned there, const NodeSums* node) const;
+  NodeMeeting meeting_at(std::size_t a, int n, unsigned there);
+  NodeMeeting find_meeting(std::size_t a, int n, unsigned there);
+  NodeBodies bodies_at(std::size_t a, int n, const NodeMeeting& meeting, const NodeSums* node) const;
   void set_motion(std::size_t node, BodyAtNode<Dim>& body) const;
   void join_sides(std::size_t a, int n, const NodeSums* node, GridSums<Dim>& sums);
   void gather_interfaces();
   void smooth_surfaces();
   SurfaceAround<Dim> surface_around(int f, std::size_t a, int n) const;
-  ContactPairs<Dim> contact_pairs(NodeBodies& bodies, double dt) const;
+  ContactPairs<Dim> contact_pairs(std::size_t a, int n, NodeBodies& bodies, double dt) const;
   void clear_grips(std::size_t a);
   void keep_grips(std::size_t a, int n, const NodeBodies& bodies, const ContactPairs<Dim>& pairs);
   void rub_fields(double dt);
@@ -393,8 +398,11 @@ class ExplicitSolver final : public Solver<Dim> {
   std::vector<std::uint8_t> meeting_;  // Meeting, per active block; several fields
   SurfaceAge surface_age_;
   HalfSpaces<Shape> half_spaces_;
+  std::vector<NodeMeeting> known_meeting_;  // per block that several fields reach
   // Per pair of fields and per block that several fields reach.
+  std::vector<ContactSurface<Dim>> contact_surface_;
   std::vector<FieldGrip<Dim>> field_grip_;
+  std::vector<std::uint8_t> gripping_;  // whether any of the block's nodes has a grip
   std::vector<Spread> field_spread_;
   std::vector<double> smoothed_push_;            // m/s2, only with Coulomb's friction between fields
   std::vector<std::array<double, Dim>> damped_;  // N s, taken by local damping in this step; per active block

@@ -116,7 +116,10 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::lay_out() {
     interfaces_.assign(several * fields_.shared_blocks().size() * block_nodes, InterfaceNode{});
     const auto pairs = static_cast<std::size_t>(pairs_of(fields_.count()));
     field_grip_.assign(pairs * fields_.shared_blocks().size() * block_nodes, FieldGrip<Dim>{});
+    gripping_.assign(pairs * fields_.shared_blocks().size(), 0);
     field_spread_.resize(field_grip_.size());
+    contact_surface_.resize(field_grip_.size());
+    known_meeting_.assign(fields_.shared_blocks().size() * block_nodes, NodeMeeting{});
   }
   if (separate_change) change_.resize(velocity_.size());
   if (options_.local_damping > 0.0) damped_.assign(velocity_.size(), {});

@@ -8,8 +8,12 @@ namespace tailrun::mpm {
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::clear_grips(std::size_t a) {
-  for (int pair = 0; pair < pairs_of(fields_.count()); ++pair)
-    std::fill_n(field_grip_.begin() + static_cast<std::ptrdiff_t>(grip_of(pair, a)), block_nodes, FieldGrip<Dim>{});
+  for (int pair = 0; pair < pairs_of(fields_.count()); ++pair) {
+    const std::size_t first = grip_of(pair, a);
+    if (!gripping_[first / block_nodes]) continue;
+    std::fill_n(field_grip_.begin() + static_cast<std::ptrdiff_t>(first), block_nodes, FieldGrip<Dim>{});
+    gripping_[first / block_nodes] = 0;
+  }
 }
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
@@ -25,6 +29,10 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_fields(double dt) {
       const std::size_t first = grip_of(pair, blocks[s]);
       FieldGrip<Dim>* grip = field_grip_.data() + first;
       double* smoothed = smoothed_push_.empty() ? nullptr : smoothed_push_.data() + first;
+      if (!gripping_[first / block_nodes]) {
+        if (smoothed) std::fill_n(smoothed, block_nodes, 0.0);
+        continue;
+      }
       for (int n = 0; n < block_nodes; ++n) {
         if (!grip[n].any()) {
           if (smoothed) smoothed[n] = 0.0;
@@ -42,9 +50,12 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_fields(double dt) {
   for (std::size_t s = 0; s < blocks.size(); ++s)
     for (int pair = 0; pair < pairs; ++pair) {
       const std::size_t first = grip_of(pair, blocks[0]);
-      for (int n = 0; n < block_nodes; ++n)
-        field_spread_[first + s * block_nodes + static_cast<std::size_t>(n)] =
-            spread_of<Dim>(fields_.shared_around(s), field_grip_.data() + first, s, n);
+      Spread* spread = field_spread_.data() + first + s * block_nodes;
+      if (!gripping_[first / block_nodes + s])
+        std::fill_n(spread, block_nodes, Spread{});
+      else
+        for (int n = 0; n < block_nodes; ++n)
+          spread[n] = spread_of<Dim>(fields_.shared_around(s), field_grip_.data() + first, s, n);
     }
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t s = 0; s < blocks.size(); ++s) rub_fields_of(s);
@@ -56,6 +67,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::rub_fields_of(std::size_t s) {
   const std::size_t a = fields_.shared_blocks()[s];
   GridSums<Dim>& sums = grid_sums_[a];
   for (int pair = 0; pair < pairs_of(fields_.count()); ++pair) {
+    if (!gripping_[grip_of(pair, a) / block_nodes]) continue;
     const FieldGrip<Dim>* grip = field_grip_.data() + grip_of(pair, a);
     const Spread* spread = field_spread_.data() + grip_of(pair, fields_.shared_blocks()[0]);
     for (int n = 0; n < block_nodes; ++n) {

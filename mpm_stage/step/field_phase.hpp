@@ -20,27 +20,56 @@ unsigned ExplicitSolver<Dim, Shape, Split, Transfer>::fields_at(std::size_t a, i
   return there;
 }
 
-// The bodies at a node with the fields `there`; sides of one soil that no weak soil keeps apart move as one.
+// Where the bodies at a node with the fields `there` meet, as long as the surfaces are as old as they are (SurfaceAge).
 template <int Dim, class Shape, bool Split, TransferName Transfer>
-typename ExplicitSolver<Dim, Shape, Split, Transfer>::NodeBodies ExplicitSolver<Dim, Shape, Split, Transfer>::bodies_at(
-    std::size_t a, int n, unsigned there, const NodeSums* node) const {
-  NodeBodies bodies;
+NodeMeeting ExplicitSolver<Dim, Shape, Split, Transfer>::meeting_at(std::size_t a, int n, unsigned there) {
+  NodeMeeting& known = known_meeting_[known_of(a) + static_cast<std::size_t>(n)];
+  if (known.fields != there) known = find_meeting(a, n, there);
+  return known;
+}
+
+// Sides of one soil that no weak soil keeps apart move as one.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+NodeMeeting ExplicitSolver<Dim, Shape, Split, Transfer>::find_meeting(std::size_t a, int n, unsigned there) {
+  std::array<BodyShape<Dim>, most_fields> shape;  // by field
   for (int f = 0; f < fields_.count(); ++f) {
     if (!(there >> f & 1U)) continue;
-    BodyAtNode<Dim>& body = bodies.body[bodies.count];
     const bool firm = options_.fields.firm(f);
-    body = body_at_node<Dim>(node[f].sum[n][0], interfaces_[interface_of(f, a) + static_cast<std::size_t>(n)],
-                             firm ? surface_around(f, a, n) : SurfaceAround<Dim>{});
-    body.firm = firm;
-    set_motion(node_of(f, a) + static_cast<std::size_t>(n), body);
-    bodies.of_field[f] = bodies.count++;
+    shape[f] = body_shape<Dim>(interfaces_[interface_of(f, a) + static_cast<std::size_t>(n)],
+                               firm ? surface_around(f, a, n) : SurfaceAround<Dim>{});
+    shape[f].firm = firm;
   }
-  const int lower = bodies.of_field[0], weak = bodies.of_field[1], upper = bodies.of_field[2];
-  if (options_.fields.by_side && lower >= 0 && upper >= 0 &&
-      !lies_between(bodies.body[weak], bodies.body[lower], bodies.body[upper])) {
-    bodies.body[lower].add(bodies.body[upper]);
-    bodies.of_field[2] = lower;
-    --bodies.count;  // the upper side is the last one
+  NodeMeeting meeting{.fields = static_cast<std::uint8_t>(there)};
+  if (options_.fields.by_side && there == 0b111U && !lies_between(shape[1], shape[0], shape[2])) {
+    shape[0].add(shape[2]);
+    meeting.sides_joined = true;
+  }
+  for (int i = 0; i < fields_.count(); ++i)
+    for (int j = i + 1; j < fields_.count(); ++j)
+      if ((there >> i & 1U) && (there >> j & 1U))
+        contact_surface_[grip_of(pair_of(i, j, fields_.count()), a) + static_cast<std::size_t>(n)] =
+            ContactSurface<Dim>(shape[i], shape[j], h_, half_spaces_);
+  return meeting;
+}
+
+// The bodies at a node where fields meet.
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+typename ExplicitSolver<Dim, Shape, Split, Transfer>::NodeBodies ExplicitSolver<Dim, Shape, Split, Transfer>::bodies_at(
+    std::size_t a, int n, const NodeMeeting& meeting, const NodeSums* node) const {
+  NodeBodies bodies;
+  for (int f = 0; f < fields_.count(); ++f) {
+    if (!(meeting.fields >> f & 1U)) continue;
+    BodyAtNode<Dim> body;
+    body.mass = node[f].sum[n][0];
+    set_motion(node_of(f, a) + static_cast<std::size_t>(n), body);
+    if (meeting.sides_joined && f == 2) {
+      bodies.body[0].add(body);
+      bodies.of_field[2] = 0;
+      continue;
+    }
+    bodies.body[bodies.count] = body;
+    bodies.field[bodies.count] = f;
+    bodies.of_field[f] = bodies.count++;
   }
   return bodies;
 }
@@ -62,22 +91,24 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::join_sides(std::size_t a, int 
   bodies.of_field[0] = bodies.of_field[2] = 0;
   bodies.body[0].mass = node[0].sum[n][0];
   upper.mass = node[2].sum[n][0];
-  bodies.body[0].volume = upper.volume = 1.0;
   set_motion(node_of(0, a) + static_cast<std::size_t>(n), bodies.body[0]);
   set_motion(node_of(2, a) + static_cast<std::size_t>(n), upper);
   bodies.body[0].add(upper);
   take_over(a, n, node, bodies, sums);
 }
 
-// The contacts between the bodies of a node, at which the pairs point.
+// The contacts between the bodies of node n, at which the pairs point.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
-ContactPairs<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::contact_pairs(NodeBodies& bodies, double dt) const {
+ContactPairs<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::contact_pairs(std::size_t a, int n, NodeBodies& bodies,
+                                                                             double dt) const {
   ContactPairs<Dim> pairs;
   for (int i = 0; i < bodies.count; ++i)
     for (int j = i + 1; j < bodies.count; ++j) {
       // Both sides of weak soil meet through it alone.
       if (options_.fields.by_side && i != bodies.of_field[1] && j != bodies.of_field[1]) continue;
-      pairs.add(ContactPair<Dim>(bodies.body[i], bodies.body[j], options_.contact, h_, dt, half_spaces_), i, j);
+      const int pair = pair_of(bodies.field[i], bodies.field[j], fields_.count());
+      const ContactSurface<Dim>& surface = contact_surface_[grip_of(pair, a) + static_cast<std::size_t>(n)];
+      pairs.add(ContactPair<Dim>(bodies.body[i], bodies.body[j], surface, options_.contact, dt), i, j);
     }
   return pairs;
 }
@@ -96,6 +127,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::keep_grips(std::size_t a, int 
     grip.fields = {static_cast<std::uint8_t>(of_body[i]), static_cast<std::uint8_t>(of_body[j])};
     const int pair = pair_of(std::countr_zero(of_body[i]), std::countr_zero(of_body[j]), fields_.count());
     field_grip_[grip_of(pair, a) + static_cast<std::size_t>(n)] = grip;
+    gripping_[grip_of(pair, a) / block_nodes] = 1;
   }
 }
 
@@ -117,8 +149,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::part_fields(std::size_t a, dou
       meeting[n] = met;
     if (sides) join_sides(a, n, node, sums);
     if (meeting[n] != surface_known) continue;
-    NodeBodies bodies = bodies_at(a, n, there, node);
-    auto pairs = contact_pairs(bodies, dt);
+    NodeBodies bodies = bodies_at(a, n, meeting_at(a, n, there), node);
+    auto pairs = contact_pairs(a, n, bodies, dt);
     if (contact && contact[n].count > 0) {
       settled[n] = static_cast<std::uint8_t>(there);
       settle_on_ground(a, n, dt, node, gap, contact[n], bodies, pairs, sums);

@@ -40,6 +40,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::gather_interfaces() {
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t s = 0; s < blocks.size(); ++s) {
     std::uint8_t* meeting = meeting_.data() + blocks[s] * block_nodes;
+    std::fill_n(known_meeting_.begin() + static_cast<std::ptrdiff_t>(s * block_nodes), block_nodes, NodeMeeting{});
     const bool any = std::any_of(meeting, meeting + block_nodes, [](std::uint8_t m) { return m != not_met; });
     for (int f = 0; f < fields_.count(); ++f) {
       InterfaceNode* node = interfaces_.data() + interface_of(f, blocks[s]);

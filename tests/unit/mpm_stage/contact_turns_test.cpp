@@ -13,15 +13,38 @@ namespace {
 constexpr double h = 0.5, dt = 1e-3, friction = 0.4;
 const HalfSpaces<QuadraticShape> half;
 
-BodyAtNode<2> body_at(double x, double y, double mass, std::array<double, 2> v) {
-  BodyAtNode<2> body;
+// What moves, and where its centre is for contact.
+struct Body : BodyAtNode<2> {
+  BodyShape<2> shape;
+};
+
+Body body_at(double x, double y, double mass, std::array<double, 2> v) {
+  Body body;
   body.mass = mass;
   body.v = body.before = v;
-  body.volume = 0.5 * h * h;
-  body.centre = {x * h, y * h};
-  body.strength = 1e4;
+  body.shape.volume = 0.5 * h * h;
+  body.shape.centre = {x * h, y * h};
+  body.shape.strength = 1e4;
   return body;
 }
+
+template <std::size_t N>
+struct Bodies {
+  std::array<BodyAtNode<2>, N> body;
+  std::array<BodyShape<2>, N> shape;
+  ContactPairs<2> pairs;
+
+  explicit Bodies(const std::array<Body, N>& bodies) {
+    for (std::size_t b = 0; b < N; ++b) {
+      body[b] = bodies[b];
+      shape[b] = bodies[b].shape;
+    }
+  }
+  void meet(std::size_t i, std::size_t j) {
+    pairs.add(ContactPair<2>(body[i], body[j], ContactSurface<2>(shape[i], shape[j], h, half), {}, dt),
+              static_cast<int>(i), static_cast<int>(j));
+  }
+};
 
 NodeContact level_ground() {
   NodeContact contact;
@@ -32,14 +55,13 @@ NodeContact level_ground() {
 }
 
 // Both bodies on the ground, with nothing but the push that the ground has given each.
-std::array<GroundPush<2>, 2> settle_two(const NodeContact& ground, BodyAtNode<2>& a, BodyAtNode<2>& b) {
-  std::array<BodyAtNode<2>, 2> body{a, b};
-  ContactPairs<2> pairs;
-  pairs.add(ContactPair<2>(body[0], body[1], {}, h, dt, half), 0, 1);
+std::array<GroundPush<2>, 2> settle_two(const NodeContact& ground, Body& a, Body& b) {
+  Bodies<2> node({a, b});
+  node.meet(0, 1);
   std::array<GroundPush<2>, 2> push{GroundPush<2>(ground, a.mass, 0.0), GroundPush<2>(ground, b.mass, 0.0)};
-  settle(pairs, body.data(), push.data(), 2);
-  a = body[0];
-  b = body[1];
+  settle(node.pairs, node.body.data(), push.data(), 2);
+  a.v = node.body[0].v;
+  b.v = node.body[1].v;
   return push;
 }
 
@@ -65,26 +87,24 @@ TEST_CASE("a body on top of another passes its push on to the ground") {
   const NodeContact ground = level_ground();
   auto below = body_at(0.0, -0.3, 1.0, {0.0, 0.0}), above = body_at(0.0, 0.3, 2.0, {0.5, -1.0});
   // The ground does not reach the upper one, which the node's gap does not tell.
-  std::array<BodyAtNode<2>, 2> body{below, above};
-  ContactPairs<2> pairs;
-  pairs.add(ContactPair<2>(body[0], body[1], {}, h, dt, half), 0, 1);
+  Bodies<2> node({below, above});
+  node.meet(0, 1);
   std::array<GroundPush<2>, 2> push{GroundPush<2>(ground, 1.0, 0.0), GroundPush<2>(ground, 2.0, 1e9)};
-  settle(pairs, body.data(), push.data(), 2);
-  CHECK(body[0].v[1] == doctest::Approx(0.0).scale(1.0));
-  CHECK(body[1].v[1] == doctest::Approx(0.0).scale(1.0).epsilon(1e-4));
-  CHECK(body[1].v[0] == 0.5);
+  settle(node.pairs, node.body.data(), push.data(), 2);
+  CHECK(node.body[0].v[1] == doctest::Approx(0.0).scale(1.0));
+  CHECK(node.body[1].v[1] == doctest::Approx(0.0).scale(1.0).epsilon(1e-4));
+  CHECK(node.body[1].v[0] == 0.5);
   CHECK(push[0].grip().friction == doctest::Approx(friction * 2.0).epsilon(1e-4));
   CHECK(!push[1].grip().pushed);
 }
 
 TEST_CASE("a body that another one lifts off the ground has got nothing from the ground") {
   const NodeContact ground = level_ground();
-  std::array<BodyAtNode<2>, 2> body{body_at(0.0, -0.3, 1.0, {0.0, 2.0}), body_at(0.0, 0.3, 1.0, {0.0, -1.0})};
-  ContactPairs<2> pairs;
-  pairs.add(ContactPair<2>(body[0], body[1], {}, h, dt, half), 0, 1);
+  Bodies<2> node({body_at(0.0, -0.3, 1.0, {0.0, 2.0}), body_at(0.0, 0.3, 1.0, {0.0, -1.0})});
+  node.meet(0, 1);
   std::array<GroundPush<2>, 2> push{GroundPush<2>(ground, 1.0, 0.0), GroundPush<2>(ground, 1.0, 0.0)};
-  settle(pairs, body.data(), push.data(), 2);
-  for (const BodyAtNode<2>& b : body) CHECK(b.v[1] == doctest::Approx(0.5).epsilon(1e-4));
+  settle(node.pairs, node.body.data(), push.data(), 2);
+  for (const BodyAtNode<2>& b : node.body) CHECK(b.v[1] == doctest::Approx(0.5).epsilon(1e-4));
   CHECK(!push[0].grip().pushed);
   CHECK(push[1].impulse()[1] == doctest::Approx(0.0).scale(1.0).epsilon(1e-4));
 }
@@ -93,41 +113,38 @@ TEST_CASE("ground that soil adheres to holds a body, and what another one presse
   NodeContact ground = level_ground();
   ground.adhere = true;
   auto held = body_at(-0.3, 0.0, 1.0, {2.0, 1.0}), other = body_at(0.3, 0.0, 1.0, {-3.0, 0.5});
-  std::array<BodyAtNode<2>, 2> body{held, other};
-  ContactPairs<2> pairs;
-  pairs.add(ContactPair<2>(body[0], body[1], {}, h, dt, half), 0, 1);
+  Bodies<2> node({held, other});
+  node.meet(0, 1);
   std::array<GroundPush<2>, 2> push{GroundPush<2>(ground, 1.0, 0.0), GroundPush<2>(ground, 1.0, 1e9)};
-  settle(pairs, body.data(), push.data(), 2);
-  CHECK(body[0].v == std::array<double, 2>{0.0, 0.0});
-  CHECK(body[1].v[0] == doctest::Approx(0.0).scale(1.0).epsilon(1e-5));
-  CHECK(body[1].v[1] == 0.5);
+  settle(node.pairs, node.body.data(), push.data(), 2);
+  CHECK(node.body[0].v == std::array<double, 2>{0.0, 0.0});
+  CHECK(node.body[1].v[0] == doctest::Approx(0.0).scale(1.0).epsilon(1e-5));
+  CHECK(node.body[1].v[1] == 0.5);
   CHECK(push[0].impulse()[0] == doctest::Approx(-2.0 + 3.0));
 }
 
 TEST_CASE("soils mixed through each other move as one, and not into the ground although one is still above it") {
   const NodeContact ground = level_ground();
-  std::array<BodyAtNode<2>, 2> body{body_at(0.0, 0.0, 1.0, {1.0, -1.0}), body_at(0.001, 0.0, 3.0, {0.0, -2.0})};
-  ContactPairs<2> pairs;
-  pairs.add(ContactPair<2>(body[0], body[1], {}, h, dt, half), 0, 1);
+  Bodies<2> node({body_at(0.0, 0.0, 1.0, {1.0, -1.0}), body_at(0.001, 0.0, 3.0, {0.0, -2.0})});
+  node.meet(0, 1);
   std::array<GroundPush<2>, 2> push{GroundPush<2>(ground, 1.0, 0.0), GroundPush<2>(ground, 3.0, 1e9)};
-  settle(pairs, body.data(), push.data(), 2);
-  CHECK(body[0].v[0] == doctest::Approx(0.25));
-  CHECK(body[1].v[0] == doctest::Approx(0.25));
-  CHECK(std::fabs(body[0].v[1]) < 1e-12);
-  CHECK(body[1].v[1] == doctest::Approx(0.0).scale(1.0).epsilon(0.001));
+  settle(node.pairs, node.body.data(), push.data(), 2);
+  CHECK(node.body[0].v[0] == doctest::Approx(0.25));
+  CHECK(node.body[1].v[0] == doctest::Approx(0.25));
+  CHECK(std::fabs(node.body[0].v[1]) < 1e-12);
+  CHECK(node.body[1].v[1] == doctest::Approx(0.0).scale(1.0).epsilon(0.001));
 }
 
 TEST_CASE("a thin layer between two bodies passes a push on, down to the ground") {
   const NodeContact ground = level_ground();
-  std::array<BodyAtNode<2>, 3> body{body_at(0.0, -0.6, 2.0, {0.0, 0.0}), body_at(0.0, 0.0, 0.5, {0.0, 0.0}),
-                                    body_at(0.0, 0.6, 2.0, {0.0, -1.0})};
-  ContactPairs<2> pairs;
-  pairs.add(ContactPair<2>(body[0], body[1], {}, h, dt, half), 0, 1);
-  pairs.add(ContactPair<2>(body[1], body[2], {}, h, dt, half), 1, 2);
+  Bodies<3> node(
+      {body_at(0.0, -0.6, 2.0, {0.0, 0.0}), body_at(0.0, 0.0, 0.5, {0.0, 0.0}), body_at(0.0, 0.6, 2.0, {0.0, -1.0})});
+  node.meet(0, 1);
+  node.meet(1, 2);
   std::array<GroundPush<2>, 3> push{GroundPush<2>(ground, 2.0, 0.0), GroundPush<2>(ground, 0.5, 1e9),
                                     GroundPush<2>(ground, 2.0, 1e9)};
-  settle(pairs, body.data(), push.data(), 3);
-  for (const BodyAtNode<2>& b : body) CHECK(std::fabs(b.v[1]) < 0.02);
+  settle(node.pairs, node.body.data(), push.data(), 3);
+  for (const BodyAtNode<2>& b : node.body) CHECK(std::fabs(b.v[1]) < 0.02);
   CHECK(push[0].impulse()[1] == doctest::Approx(2.0).epsilon(0.03));
 }
 
@@ -151,7 +168,7 @@ TEST_CASE("whatever meets on the ground: no energy is made, nothing goes into it
       CHECK(a.mass * a.v[d] + b.mass * b.v[d] - push[0].impulse()[d] - push[1].impulse()[d] ==
             doctest::Approx(momentum[d]).epsilon(1e-12));
     for (int p = 0; p < ground.count; ++p)
-      for (const BodyAtNode<2>& body : {a, b})
+      for (const Body& body : {a, b})
         CHECK(body.v[0] * ground.point[p].normal[0] + body.v[1] * ground.point[p].normal[1] > -0.02);
   }
 }

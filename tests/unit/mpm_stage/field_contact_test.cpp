@@ -16,15 +16,24 @@ namespace {
 constexpr double h = 0.5, dt = 1e-3;
 const HalfSpaces<QuadraticShape> half;
 
+// A body as it moves, with its shape.
+struct Body : BodyAtNode<2> {
+  BodyShape<2> shape;
+};
+
+ContactPair<2> between(Body& i, Body& j, const FieldContactLaw& law) {
+  return ContactPair<2>(i, j, ContactSurface<2>(i.shape, j.shape, h, half), law, dt);
+}
+
 // Two half-spaces that meet in the plane x = 0 through the node.
-BodyAtNode<2> side(double sign, double mass, std::array<double, 2> v, double strength) {
-  BodyAtNode<2> body;
+Body side(double sign, double mass, std::array<double, 2> v, double strength) {
+  Body body;
   body.mass = mass;
   body.v = body.before = v;
-  body.volume = 0.5 * h * h;
-  body.centre = {0.5 * sign * h * half.centres_apart(0.5), 0.0};
-  body.surface = {-sign * h * half.slice(0.5), 0.0};
-  body.strength = strength;
+  body.shape.volume = 0.5 * h * h;
+  body.shape.centre = {0.5 * sign * h * half.centres_apart(0.5), 0.0};
+  body.shape.surface = {-sign * h * half.slice(0.5), 0.0};
+  body.shape.strength = strength;
   return body;
 }
 
@@ -65,13 +74,13 @@ TEST_CASE("contact between two fields keeps momentum and takes energy, whatever 
   for (int k = 0; k < 1000; ++k) {
     auto i = side(-1.0, mass(random), {some(random), some(random)}, 1e4 * (1.0 + some(random)));
     auto j = side(1.0, mass(random), {some(random), some(random)}, no_soil_limit);
-    i.centre[1] = 0.2 * h * some(random);
-    i.firm = k % 3 == 0;
-    j.firm = k % 2 == 0;
+    i.shape.centre[1] = 0.2 * h * some(random);
+    i.shape.firm = k % 3 == 0;
+    j.shape.firm = k % 2 == 0;
     const FieldContactLaw law{k % 5 == 0 ? 0.4 : -1.0, k % 7 == 0 ? Opening::held : Opening::free};
     const std::array<double, 2> before = {i.mass * i.v[0] + j.mass * j.v[0], i.mass * i.v[1] + j.mass * j.v[1]};
     const double start = energy(i) + energy(j);
-    ContactPair<2> pair(i, j, law, h, dt, half);
+    ContactPair<2> pair = between(i, j, law);
     pair.press();
     const double pressed = energy(i) + energy(j);
     CHECK(pressed <= start * (1.0 + 1e-14));
@@ -85,15 +94,15 @@ TEST_CASE("contact between two fields keeps momentum and takes energy, whatever 
 TEST_CASE("phi = 0 soil brakes by its strength times the surface, and not at all across a gap") {
   const double strength = 5e3, area = h * half.slice(0.5);
   auto weak = side(-1.0, 1e3, {0.0, 1.0}, strength), strong = side(1.0, 1e9, {0.0, 0.0}, no_soil_limit);
-  strong.firm = true;
-  ContactPair<2> pair(weak, strong, {}, h, dt, half);
+  strong.shape.firm = true;
+  ContactPair<2> pair = between(weak, strong, {});
   pair.press();
   rub(pair, weak, strong);
   CHECK(weak.v[1] == doctest::Approx(1.0 - dt * strength * area / 1e3).epsilon(1e-6));
 
   auto apart = side(-1.0, 1e3, {0.1, 1.0}, strength);
-  apart.centre[0] -= 0.5 * h;
-  ContactPair<2> open(apart, strong, {}, h, dt, half);
+  apart.shape.centre[0] -= 0.5 * h;
+  ContactPair<2> open = between(apart, strong, {});
   open.press();
   rub(open, apart, strong);
   CHECK(apart.v[0] == 0.1);
@@ -105,15 +114,15 @@ TEST_CASE(
   for (const bool flows : {false, true})
     for (const double plainness : {1.0, 0.8}) {
       auto i = side(-1.0, 2.0, {1.0, 0.0}, no_soil_limit), j = side(1.0, 3.0, {0.0, 0.0}, no_soil_limit);
-      i.firm = true;
-      j.firm = !flows;
-      const double size = i.surface[0] < 0.0 ? -i.surface[0] : i.surface[0];
-      i.surface = {0.9 * size, 0.3 * size};  // wobbles
-      i.outward = {8.0 * size, 0.0};
-      i.faces = 8.0 * size / plainness;
-      j.surface = j.outward = {-0.7 * size, -0.7 * size};  // a corner
-      j.faces = 2.0 * size;
-      ContactPair<2> pair(i, j, {}, h, dt, half);
+      i.shape.firm = true;
+      j.shape.firm = !flows;
+      const double size = i.shape.surface[0] < 0.0 ? -i.shape.surface[0] : i.shape.surface[0];
+      i.shape.surface = {0.9 * size, 0.3 * size};  // wobbles
+      i.shape.outward = {8.0 * size, 0.0};
+      i.shape.faces = 8.0 * size / plainness;
+      j.shape.surface = j.shape.outward = {-0.7 * size, -0.7 * size};  // a corner
+      j.shape.faces = 2.0 * size;
+      ContactPair<2> pair = between(i, j, {});
       pair.press();
       if (flows && plainness < 0.9)
         CHECK(i.v[1] < -0.1);
@@ -121,6 +130,20 @@ TEST_CASE(
         CHECK(i.v[1] == doctest::Approx(0.0));
       CHECK(i.v[0] < 1.0);
     }
+}
+
+TEST_CASE("a body whose place is not known yet touches nothing, nor keeps others apart") {
+  auto i = side(-1.0, 1.0, {1.0, 0.5}, 1e4), j = side(1.0, 2.0, {0.0, 0.0}, no_soil_limit);
+  const BodyShape<2> lower = i.shape, upper = j.shape;
+  CHECK(lies_between(BodyShape<2>{.volume = 0.1}, lower, upper));
+  CHECK_FALSE(lies_between(BodyShape<2>{}, lower, upper));
+  for (const Opening opening : {Opening::free, Opening::held}) {
+    i.shape = body_shape<2>(InterfaceNode{}, {});
+    ContactPair<2> pair = between(i, j, {0.3, opening});
+    CHECK(pair.press() == 0.0);
+    CHECK_FALSE(pair.grip().any());
+    CHECK(i.v == std::array<double, 2>{1.0, 0.5});
+  }
 }
 
 TEST_CASE("what nodes may take off the sliding goes to those that slide, and all of it where they do") {
