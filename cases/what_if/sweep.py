@@ -41,6 +41,12 @@ def jobs_asked(flags):
     return 1 if found is None else int(found.group(1) or 0)
 
 
+def only_says(flags):
+    """Whether make was called with -n (--dry-run, --just-print): then what is missing is said, and nothing computed or written."""
+    first = flags.split(" ")[0]
+    return not first.startswith("-") and "n" in first and "=" not in first
+
+
 def share(missing, particles, cores, asked, memory=1.0, each=0.0, own=0):
     """(units at a time, threads of each) for `missing` members: as many at a time as make was asked for, or as the cores and the memory
     have room for (`memory` free, `each` of one run, in one unit). Cores that are left over go to the units, unless their threads are
@@ -108,6 +114,15 @@ def write_plan(folder, design, members, arguments):
         "members": [{"number": m.number, "values": m.values, "settings": m.settings, "keys": m.keys} for m in members]})
 
 
+def say_missing(folder, members, store, units):
+    missing = sum(1 for unit in units if unit.stage == "mpm")
+    stages = {stage: sum(1 for unit in units if unit.stage == stage) for stage in dict.fromkeys(unit.stage for unit in units)}
+    failed = len({member.key for member in members if plan.has_failed(member, store)})
+    print(f"{folder}: {len(members)} members, {len({m.key for m in members}) - missing - failed} there already"
+          + (f", {failed} failed before (RETRY=1 tries them again)" if failed else "")
+          + (f"; to compute: {', '.join(f'{count} x {stage}' for stage, count in stages.items())}" if units else ""), flush=True)
+
+
 def run(arguments, design, folder):
     store = arguments.fem / "store"
     busy = slurm.still_queued(folder)
@@ -116,6 +131,9 @@ def run(arguments, design, folder):
         return 1
     base = chain_of(arguments)
     members = plan.members_of(design, base)
+    if only_says(os.environ.get("MAKEFLAGS", "")):
+        say_missing(folder, members, store, plan.units_of(members, store, arguments.fem, arguments.phase))
+        return 0
     for member in members:
         if plan.is_done(store, member.key):
             plan.tidy(store, member.key)
@@ -124,12 +142,8 @@ def run(arguments, design, folder):
     units = plan.units_of(members, store, arguments.fem, arguments.phase)
     folder.mkdir(parents=True, exist_ok=True)
     write_plan(folder, design, members, arguments)
+    say_missing(folder, members, store, units)
     missing = sum(1 for unit in units if unit.stage == "mpm")
-    stages = {stage: sum(1 for unit in units if unit.stage == stage) for stage in dict.fromkeys(unit.stage for unit in units)}
-    failed = len({member.key for member in members if plan.has_failed(member, store)})
-    print(f"{folder}: {len(members)} members, {len({m.key for m in members}) - missing - failed} there already"
-          + (f", {failed} failed before (RETRY=1 tries them again)" if failed else "")
-          + (f"; to compute: {', '.join(f'{count} x {stage}' for stage, count in stages.items())}" if units else ""), flush=True)
     lines = plan.write_table(folder / "units.jsonl", units)
     cores = len(os.sched_getaffinity(0))
     particles, memory = scene_of(arguments, members, store)
@@ -190,6 +204,8 @@ def main():
             return finish(arguments, folder)
         own = not arguments.ensemble or arguments.design.exists()
         design = read_design(arguments.design, arguments.case) if own else ensemble.design_for(arguments.case)
+        if only_says(os.environ.get("MAKEFLAGS", "")):
+            return run(arguments, design, folder)
         held = lock.acquire(folder / ".lock", refuse=os.environ.get("WAIT") == "0")
         return 1 if held is None else run(arguments, design, folder)
     except (DesignError, SettingError, ValueError, OSError) as error:

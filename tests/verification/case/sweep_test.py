@@ -28,6 +28,8 @@ with tempfile.TemporaryDirectory() as name:
 
     assert "docs/what_if.md" in clone.make("sweep-files", status=2)[0].stderr
     clone.sweep_file(FACTORS)
+    result, ran = clone.make("sweep-files", "-j2", "-n", status=0)
+    assert ran == [] and not folder.exists() and "4 members, 0 there already; to compute:" in result.stdout and "4 x mpm" in result.stdout, result.stdout
     result, ran = clone.make("sweep-files", "-j2", status=0)
     assert ran == sorted(["fem_stage mesh", "fem_stage geostatic", "fem_stage shake", "transfer_tool run", *(f"{FACTOR}{f}" for f in (0.5, 0.75, 1.25, 2.0))]), ran
     assert "2 at a time" in result.stdout and "4 of 4 members done" in result.stderr, (result.stdout, result.stderr)
