@@ -22,13 +22,65 @@ constexpr double no_gap_known = std::numeric_limits<double>::infinity();
 struct Gap {
   double value = no_gap_known;          // m
   double volume = 0.0, strength = 0.0;  // m3 and m3 Pa, times the node's weights
+  // m3 Pa, the same, of soil that sticks: its tractions on the ground, along it and (compression positive) across it.
+  double shear = 0.0, pressure = 0.0;
   Gap& operator+=(const Gap& o) {
     value = std::min(value, o.value);
     volume += o.volume;
     strength += o.strength;
+    shear += o.shear;
+    pressure += o.pressure;
     return *this;
   }
 };
+
+// Of soil in contact with a surface: along it (its size) and across it (compression positive).
+struct Traction {
+  double shear = 0.0, pressure = 0.0;  // Pa
+};
+
+// Of particle p's total stress on a surface that faces along `across`, of any length.
+template <int Dim>
+Traction traction_of(const Particles<Dim>& P, std::size_t p, const std::array<double, Dim>& across) {
+  double size = 0.0;
+  for (const double x : across) size += x * x;
+  if (!(size > 0.0)) return {};
+  const double sxy = P.stress[3][p];
+  std::array<double, Dim> traction;
+  if constexpr (Dim == 2) {
+    traction = {P.stress[0][p] * across[0] + sxy * across[1], sxy * across[0] + P.stress[1][p] * across[1]};
+  } else {
+    const double syz = P.stress[4][p], szx = P.stress[5][p];
+    traction = {P.stress[0][p] * across[0] + sxy * across[1] + szx * across[2],
+                sxy * across[0] + P.stress[1][p] * across[1] + syz * across[2],
+                szx * across[0] + syz * across[1] + P.stress[2][p] * across[2]};
+  }
+  double normal = 0.0, square = 0.0;
+  for (int d = 0; d < Dim; ++d) {
+    normal += traction[d] * across[d];
+    square += traction[d] * traction[d];
+  }
+  return {.shear = std::sqrt(std::max(0.0, square - normal * normal / size) / size),
+          .pressure = (P.pore_pressure.empty() ? 0.0 : P.pore_pressure[p]) - normal / size};
+}
+
+// The direction in which the distance grows at a particle, whose place in its `cell` of the tile is `f`.
+template <int Dim, class Shape>
+std::array<double, Dim> away_from_ground(const double* distance, const int* cell, const double* f) {
+  constexpr int T = Tile<Dim, Shape>::side;
+  std::array<double, Dim> gradient{};
+  for (int n = 0; n < (1 << Dim); ++n) {
+    int at = 0;
+    for (int d = Dim - 1; d >= 0; --d) at = at * T + cell[d] + (n >> d & 1);
+    for (int d = 0; d < Dim; ++d) {
+      double slope = (n >> d & 1) ? 1.0 : -1.0;
+      for (int e = 0; e < Dim; ++e)
+        if (e != d) slope *= (n >> e & 1) ? f[e] : 1.0 - f[e];
+      gradient[d] += slope * distance[at];
+    }
+  }
+  return gradient;
+}
 
 // `distance` is the tile of the nodes' signed distances, infinity where unknown; adds to the tile `gap`. The materials
 // are those of the particles' indices.
@@ -62,14 +114,22 @@ void scatter_gaps(const Particles<Dim>& P, std::size_t begin, std::size_t end,
     int base[3] = {0, 0, 0};
     double w[3][S], unused[S], moment[S];
     for (int d = 0; d < Dim; ++d) base[d] = Shape::evaluate(X[d], w[d], unused, moment);
-    const double limit = soil_limit(materials[static_cast<std::size_t>(P.material[p])], P.strength[p]);
+    const MaterialConstants& material = materials[static_cast<std::size_t>(P.material[p])];
+    const double limit = soil_limit(material, P.strength[p]);
+    const bool sticks = material.flows && limit >= no_soil_limit;
+    const Traction on_ground =
+        sticks ? traction_of<Dim>(P, p, away_from_ground<Dim, Shape>(distance, cell, f)) : Traction{};
     for (int k = 0; k < (Dim == 3 ? S : 1); ++k)
       for (int j = 0; j < S; ++j)
         for (int i = 0; i < S; ++i) {
           const double weight = w[0][i] * w[1][j] * (Dim == 3 ? w[2][k] : 1.0);
           if (weight <= 0.0) continue;
           const double volume = weight * P.volume[p];
-          gap[((base[2] + k) * T + base[1] + j) * T + base[0] + i] += Gap{clearance, volume, volume * limit};
+          gap[((base[2] + k) * T + base[1] + j) * T + base[0] + i] += Gap{.value = clearance,
+                                                                          .volume = volume,
+                                                                          .strength = volume * limit,
+                                                                          .shear = volume * on_ground.shear,
+                                                                          .pressure = volume * on_ground.pressure};
         }
   }
 }

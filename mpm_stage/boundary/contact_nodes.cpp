@@ -30,9 +30,8 @@ void ContactNodes<Dim>::update(const BlockGrid<Dim>& grid) {
           NodeContact node;
           const double x = x0 + i * h, y = y0 + j * h;
           node.count = terrain_.contacts(x, y, reach_, node.point, node.adhere);
-          bool adhere_beside = false;
           if (node.count == 0 && surface[j * B + i] > 0.0)
-            node.beside = terrain_.contacts(x, y, far, node.point, adhere_beside) > 0;
+            node.beside = terrain_.contacts(x, y, far, node.point, node.adhere) > 0;
           contacts_.push_back(node);
           distances_.push_back(terrain_.distance(x, y));
           surfaces_.push_back(Dim == 3 ? surface[j * B + i] * h : surface[j * B + i]);

@@ -210,8 +210,15 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::touch_boundaries(int f, std::s
       const double surface = ground_.surfaces(a)[n] * share_inside<Dim>(wall_nodes_, grid_.node_index(a, n));
       return carried_by_soil((*gap)[n], surface, dt);
     };
-    if (contact && contact[n].beside && options_.soil_limits_friction)
+    if (contact && contact[n].beside && options_.soil_limits_friction) {
       grip_[k] = grip_beside(contact[n], (*gap)[n], m, carried());
+      if (const double drag = drag_beside(contact[n], (*gap)[n], ground_.surfaces(a)[n], dt); drag > 0.0) {
+        NodeGrip stuck;
+        stuck.mass = m;
+        stuck.normal = contact[n].point[0].normal;
+        sums.friction += apply_friction<Dim>(stuck, drag, v);
+      }
+    }
     if (contact && contact[n].count > 0) {
       NodeGrip& grip = grip_[k];
       if (!(settled[n] >> f & 1U)) grip = stop_approach<Dim>(contact[n], m, std::max(0.0, (*gap)[n].value) / dt, v);

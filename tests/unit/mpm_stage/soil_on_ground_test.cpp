@@ -1,4 +1,4 @@
-// What the ground holds of phi = 0 soil, wherever it lies between rows of nodes.
+// What the ground holds of soil, wherever it lies between rows of nodes.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -13,7 +13,9 @@ constexpr double g = 9.81, density = 1870.0, thickness = 4.0, cell = 0.5;
 
 // m/s, of a slab after `seconds` under gravity tilted by 25 degrees, over ground `lift` cells above a row of nodes. It
 // starts without shear stress, so it slides at first; its cohesion is `safety` times what the slope asks for.
-double speed_after(double seconds, double safety, double lift) {
+// `change` makes other soil of it.
+template <class Change>
+double speed_after(double seconds, double safety, double lift, double friction, Change change) {
   constexpr double spacing = 0.5 * cell;
   constexpr std::size_t wide = 100, high = 16;
   const double slope = 25.0 * M_PI / 180.0, ground = lift * cell;
@@ -34,14 +36,27 @@ double speed_after(double seconds, double safety, double lift) {
   clay.law = &law_named("tresca");
   clay.youngs_modulus = 5e6;
   clay.poisson_ratio = 0.33;
+  change(clay);
   Terrain bed;
-  bed.add_line({{{-1000.0, ground}}, {{1000.0, ground}}}, {10.0}, false);
+  bed.add_line({{{-1000.0, ground}}, {{1000.0, ground}}}, {friction}, false);
   const auto s = make_solver<2>({}, cell, {}, std::move(P), {clay}, bed, Walls<2>{});
   s->start(1e30);
   for (double time = 0.0; time < seconds;) time += s->step({g * std::sin(slope), -g * std::cos(slope)}, {}, 1e30).dt;
   double sum = 0.0;
   for (const double v : s->particles().velocity[0]) sum += v;
   return sum / static_cast<double>(s->particles().count());
+}
+
+double speed_after(double seconds, double safety, double lift) {
+  return speed_after(seconds, safety, lift, 10.0, [](Material&) {});
+}
+
+void softens(Material& clay) {
+  clay.softening = Softening{.active = true, .end_strain = 1.0, .cohesion_ratio = 0.9};
+}
+
+void grows_with_the_rate(Material& clay) {
+  clay.rate = RateLaw{.consistency = 200.0, .exponent = 1.0};
 }
 
 }  // namespace
@@ -61,5 +76,23 @@ TEST_CASE("the ground holds no more of phi = 0 soil than that carries, wherever 
     CAPTURE(lift);
     const double gained = (speed_after(1.5, 0.7, lift) - speed_after(0.5, 0.7, lift)) / 1.0;
     CHECK(gained == doctest::Approx(0.3 * weight).epsilon(0.1));
+  }
+}
+
+TEST_CASE("soil that sticks to the ground stands on it wherever it lies in a cell") {
+  for (const double lift : {0.0, 0.25, 0.45, 0.55, 0.8}) {
+    CAPTURE(lift);
+    // 3.3 m/s without drag_beside() at a lift of 0.45.
+    CHECK(std::fabs(speed_after(2.0, 1.15, lift, 10.0, softens)) < 0.15);
+    CHECK(std::fabs(speed_after(2.0, 1.15, lift, 10.0, grows_with_the_rate)) < 0.15);
+  }
+}
+
+TEST_CASE("and slides on smoother ground with Coulomb's friction alone") {
+  const double slope = 25.0 * M_PI / 180.0;
+  for (const double lift : {0.0, 0.45}) {
+    CAPTURE(lift);
+    const auto speed = [lift](double seconds) { return speed_after(seconds, 3.0, lift, 0.3, softens); };
+    CHECK(speed(1.5) - speed(0.5) == doctest::Approx(g * (std::sin(slope) - 0.3 * std::cos(slope))).epsilon(0.05));
   }
 }
