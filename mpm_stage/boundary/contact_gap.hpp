@@ -22,13 +22,15 @@ constexpr double no_gap_known = std::numeric_limits<double>::infinity();
 struct Gap {
   double value = no_gap_known;          // m
   double volume = 0.0, strength = 0.0;  // m3 and m3 Pa, times the node's weights
-  // m3 Pa, the same, of soil that sticks: its tractions on the ground, along it and (compression positive) across it.
-  double shear = 0.0, pressure = 0.0;
+  // m3 Pa, the same, of soil that sticks: its tractions on the ground, along it, what of them brakes beside nodes in
+  // contact (most_drag), and (compression positive) across it.
+  double shear = 0.0, held = 0.0, pressure = 0.0;
   Gap& operator+=(const Gap& o) {
     value = std::min(value, o.value);
     volume += o.volume;
     strength += o.strength;
     shear += o.shear;
+    held += o.held;
     pressure += o.pressure;
     return *this;
   }
@@ -62,6 +64,14 @@ Traction traction_of(const Particles<Dim>& P, std::size_t p, const std::array<do
   }
   return {.shear = std::sqrt(std::max(0.0, square - normal * normal / size) / size),
           .pressure = (P.pore_pressure.empty() ? 0.0 : P.pore_pressure[p]) - normal / size};
+}
+
+// Pa, by which the ground brakes soil beside nodes in contact at most: of soil that flows and sticks all that it
+// carries, of frictional soil what it carries without pressure, for it presses on nodes in contact with all of its
+// weight.
+inline double most_drag(const MaterialConstants& k, double limit, double cohesion, double plastic_strain) {
+  if (limit < no_soil_limit) return 0.0;
+  return k.flows ? no_soil_limit : softened_cohesion(k, cohesion, softening_share(k, plastic_strain));
 }
 
 // The direction in which the distance grows at a particle, whose place in its `cell` of the tile is `f`.
@@ -116,9 +126,12 @@ void scatter_gaps(const Particles<Dim>& P, std::size_t begin, std::size_t end,
     for (int d = 0; d < Dim; ++d) base[d] = Shape::evaluate(X[d], w[d], unused, moment);
     const MaterialConstants& material = materials[static_cast<std::size_t>(P.material[p])];
     const double limit = soil_limit(material, P.strength[p]);
-    const bool sticks = material.flows && limit >= no_soil_limit;
-    const Traction on_ground =
-        sticks ? traction_of<Dim>(P, p, away_from_ground<Dim, Shape>(distance, cell, f)) : Traction{};
+    Traction on_ground;
+    double held = 0.0;
+    if (const double most = most_drag(material, limit, P.strength[p], P.plastic_strain[p]); most > 0.0) {
+      on_ground = traction_of<Dim>(P, p, away_from_ground<Dim, Shape>(distance, cell, f));
+      held = std::min(on_ground.shear, most);
+    }
     for (int k = 0; k < (Dim == 3 ? S : 1); ++k)
       for (int j = 0; j < S; ++j)
         for (int i = 0; i < S; ++i) {
@@ -129,6 +142,7 @@ void scatter_gaps(const Particles<Dim>& P, std::size_t begin, std::size_t end,
                                                                           .volume = volume,
                                                                           .strength = volume * limit,
                                                                           .shear = volume * on_ground.shear,
+                                                                          .held = volume * held,
                                                                           .pressure = volume * on_ground.pressure};
         }
   }

@@ -75,14 +75,15 @@ inline NodeGrip grip_beside(const NodeContact& contact, const Gap& soil, double 
 }
 
 // N s, by which the ground brakes soil that sticks to it (phi = 0 soil whose strength softens or grows with the rate,
-// fluids), at such a node: the traction along it on what is the node's of the surface (m, m2). Soil sticks as long as
-// that is less than Coulomb's friction; where it slides, nodes in contact brake it with all of its weight. Between half
-// and three quarters of Coulomb's friction the drag fades, since tractions of particles scatter.
+// fluids, cohesive frictional soil), at such a node: traction along it on what is the node's of the surface (m, m2).
+// Soil sticks as long as that is less than Coulomb's friction; where it slides, nodes in contact brake it with all of
+// its weight. Between half and three quarters of Coulomb's friction the drag fades, since tractions of particles
+// scatter.
 inline double drag_beside(const NodeContact& contact, const Gap& soil, double surface, double dt) {
-  if (!(soil.shear > 0.0)) return 0.0;
+  if (!(soil.held > 0.0)) return 0.0;
   const double coulomb = contact.point[0].friction * soil.pressure;
   const double reserve = contact.adhere ? 1.0 : coulomb > soil.shear ? 1.0 - soil.shear / coulomb : 0.0;
-  return dt * surface * std::clamp(4.0 * reserve - 1.0, 0.0, 1.0) * soil.shear / soil.volume;
+  return dt * surface * std::clamp(4.0 * reserve - 1.0, 0.0, 1.0) * soil.held / soil.volume;
 }
 
 // m/s, the part of `v` along the ground.

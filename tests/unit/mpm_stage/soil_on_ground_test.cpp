@@ -59,6 +59,11 @@ void grows_with_the_rate(Material& clay) {
   clay.rate = RateLaw{.consistency = 200.0, .exponent = 1.0};
 }
 
+void has_some_friction(Material& clay) {
+  clay.law = &law_named("mohr_coulomb");
+  clay.friction_angle = 1.0;
+}
+
 }  // namespace
 
 TEST_CASE("a slab of phi = 0 soil with a factor of safety of 1.05 comes to rest, wherever the ground lies in a cell") {
@@ -85,6 +90,7 @@ TEST_CASE("soil that sticks to the ground stands on it wherever it lies in a cel
     // 3.3 m/s without drag_beside() at a lift of 0.45.
     CHECK(std::fabs(speed_after(2.0, 1.15, lift, 10.0, softens)) < 0.15);
     CHECK(std::fabs(speed_after(2.0, 1.15, lift, 10.0, grows_with_the_rate)) < 0.15);
+    CHECK(std::fabs(speed_after(2.0, 1.15, lift, 10.0, has_some_friction)) < 0.15);
   }
 }
 
