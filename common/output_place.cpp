@@ -76,6 +76,18 @@ void check_output_file(const fs::path& path) {
   check_output_folder(path.has_parent_path() ? path.parent_path() : fs::path("."));
 }
 
+void require_no_input(const fs::path& path, const fs::path& input) {
+  std::error_code failed;
+  if (!path.empty() && !input.empty() && fs::equivalent(path, input, failed))
+    throw InputError(fmt::format("{}: is the input {} itself, which is not replaced; give another name", path.string(),
+                                 input.string()));
+}
+
+void check_output_file(const fs::path& path, const std::vector<fs::path>& inputs) {
+  for (const fs::path& input : inputs) require_no_input(path, input);
+  check_output_file(path);
+}
+
 fs::path temporary_name(const fs::path& path) {
   return path.string() + fmt::format(".{}.part", getpid());
 }

@@ -4,12 +4,19 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace tailrun {
 
 // Throws InputError when `path` is empty, exists and is no regular file, or lies in a folder that cannot be made or
 // written to. Makes the folder; leaves the file as it is.
 void check_output_file(const std::filesystem::path& path);
+
+// The same, and when `path` is one of the `inputs` (those that are empty do not count), under whatever name.
+void check_output_file(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs);
+
+// Throws InputError when `path` is `input`, under whatever name.
+void require_no_input(const std::filesystem::path& path, const std::filesystem::path& input);
 
 // Throws InputError when `path` exists and is no regular file: what every writer asks for right before it writes.
 void require_replaceable(const std::filesystem::path& path);

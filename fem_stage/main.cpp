@@ -258,7 +258,10 @@ int main(int argc, char** argv) {
   element.add("--summary", element_test.summary, "JSON summary (also printed)");
   element.does([&] {
     for (const auto& path : {element_test.output, element_test.summary})
-      if (!path.empty()) check_output_file(path);
+      if (!path.empty()) check_output_file(path, {element_test.case_file});
+    if (!element_test.output.empty() && element_test.output == element_test.summary)
+      throw InputError(fmt::format("--summary {}: is the curve's file, too (-o); give another name",
+                                   std::filesystem::path(element_test.summary).string()));
     run_element_test(element_test);
   });
 

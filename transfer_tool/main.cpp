@@ -78,7 +78,7 @@ void warn_about(const Snapshot& snapshot, const TransferCase& wanted, const std:
 }
 
 void run(const RunOptions& options) {
-  check_output_file(options.output_path);
+  check_output_file(options.output_path, {options.case_path, options.snapshot_path, options.geostatic_path});
   Provenance provenance{"transfer_tool", {}, {}};
   const CaseFile file(options.case_path);
   provenance.add_text(file.path(), file.text());
@@ -126,10 +126,11 @@ void run(const RunOptions& options) {
 }
 
 void import(const std::string& case_path, const std::string& output_path) {
-  check_output_file(output_path);
+  check_output_file(output_path, {case_path});
   Provenance provenance{"transfer_tool", {}, {}};
   const CaseFile file(case_path);
   const Snapshot snapshot = import_tables(file, provenance);
+  for (const auto& [table, sum] : provenance.sha256) require_no_input(output_path, table);
   check_state(columns_of(snapshot, case_path, {}, true));
   const std::string title = "transfer_tool import " + case_path;
   echo_options(title, file.echo(), options_of(output_path));
@@ -147,7 +148,7 @@ struct StrengthOptions {
 };
 
 void strength(const StrengthOptions& options) {
-  if (!options.output_path.empty()) check_output_file(options.output_path);
+  if (!options.output_path.empty()) check_output_file(options.output_path, {options.case_path});
   constexpr std::size_t points = 161;  // even steps of 2.5 kPa up to 400 kPa
   const CaseFile file(options.case_path);
   const auto curves = strength_curves(file, options.percentiles);

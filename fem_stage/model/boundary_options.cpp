@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <set>
+#include <string>
 
 #include "common/error.hpp"
 
@@ -94,9 +96,14 @@ BoundaryOptions read_boundaries(const CaseNode& node) {
     std::copy(field.begin(), field.end(), held.field.begin());
     out.held_pressure.push_back(std::move(held));
   }
+  std::set<std::string> flooded;
   for (const auto& item : node.list_or_empty("ponded_water")) {
     Pond pond{item.texts_or("lines", {}), item.number("level", "m", Range::any()), item.pointer()};
     if (pond.lines.empty()) item.fail("lines", "at least one line of the ground under water is required");
+    for (const std::string& line : pond.lines) {
+      if (!flooded.insert(line).second)
+        item.fail("lines", fmt::format("line '{}' is under water twice, and would be pressed twice", line));
+    }
     out.ponds.push_back(std::move(pond));
   }
   for (const auto& item : node.list_or_empty("free_field_dashpots")) {

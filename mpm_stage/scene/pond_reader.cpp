@@ -68,6 +68,18 @@ void read_range(const CaseNode& node, int dimension, Pond& pond) {
   }
 }
 
+// At one place there is one level of water: two ponds would press twice.
+void require_apart(const CaseNode& node, int dimension, const Pond& pond, const Pond& other) {
+  constexpr double least = 1e-6;  // m
+  for (int d = 0; d < dimension; d += 2) {
+    const auto axis = static_cast<std::size_t>(d);
+    if (!(std::min(pond.high[axis], other.high[axis]) - std::max(pond.low[axis], other.low[axis]) > least)) return;
+  }
+  node.fail("", fmt::format("pond '{}' (x from {:g} to {:g} m) covers ground that pond '{}' (x from {:g} to {:g} m) "
+                            "covers, too, and both would press; set x_from and x_to apart",
+                            pond.name, pond.low[0], pond.high[0], other.name, other.low[0], other.high[0]));
+}
+
 void require_upright(const CaseNode& root, const Scene& scene) {
   if (scene.gravity[0] == 0.0 && scene.gravity[2] == 0.0 && scene.gravity[1] < 0.0) return;
   root.fail("gravity", "ponded water needs gravity along -y, [0, -9.81]: its level is a height y");
@@ -97,6 +109,7 @@ std::vector<Pond> read_ponds(const CaseNode& root, const Scene& scene) {
         if (other.name == pond.name)
           node.fail(node.has("from_particles") ? "from_particles" : "name",
                     fmt::format("'{}' is the name of two ponds", pond.name));
+      for (const Pond& other : ponds) require_apart(node, scene.dimension, pond, other);
       ponds.push_back(std::move(pond));
     }
     for (const PondedReach& reach : carried)

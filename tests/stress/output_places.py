@@ -8,6 +8,7 @@ Usage: output_places.py TRANSFER_TOOL MPM_STAGE FOLDER (with import.json, transf
 import os
 import pathlib
 import resource
+import shutil
 import signal
 import stat
 import subprocess
@@ -42,6 +43,20 @@ with tempfile.TemporaryDirectory() as name:
     runout = ["run", "-q", folder / "mpm.json", "--particles", particles, "-o"]
     assert called(tool, *imported, snapshot).returncode == 0
     assert called(tool, *handed, particles).returncode == 0
+
+    # An input is no place for a result, under whatever name.
+    inputs = where / "inputs"
+    shutil.copytree(folder, inputs)
+    alias = where / "alias.h5"
+    alias.symlink_to(snapshot)
+    tables = [table for table in inputs.glob("*.csv") if table.name in (inputs / "import.json").read_text()]
+    assert tables
+    for command, places in ((["import", "-q", inputs / "import.json", "-o"], [inputs / "import.json", *tables]),
+                            (["run", "-q", inputs / "transfer.json", "--snapshot", snapshot, "-o"], [snapshot, alias, inputs / "transfer.json"])):
+        for place in places:
+            kept = place.read_bytes()
+            refused(called(tool, *command, place), f"transfer_tool {command[0]} -o {place}")
+            assert place.read_bytes() == kept, place
 
     pipe, plain = where / "pipe", where / "plain"
     os.mkfifo(pipe)

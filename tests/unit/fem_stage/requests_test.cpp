@@ -159,6 +159,20 @@ TEST_CASE("rectangles beyond memory") {
         std::string::npos);
 }
 
+TEST_CASE("a line that stands under water twice is refused") {
+  for (const char* ponds : {R"({ "lines": ["top", "top"], "level": 5 })",
+                            R"({ "lines": ["top"], "level": 5 }, { "lines": ["top"], "level": 6 })"}) {
+    const auto path = case_file(R"("duration": 1)", R"("phreatic_line": [[-9, 5], [9, 5]],)");
+    std::ifstream file(path);
+    std::string text((std::istreambuf_iterator<char>(file)), {});
+    file.close();
+    const std::string before = R"("roller_lines")";
+    text.insert(text.find(before), fmt::format(R"("ponded_water": [{}], )", ponds));
+    std::ofstream(path) << text;
+    CHECK(refusal([&] { read_fem_case(path, ""); }).find("'top' is under water twice") != std::string::npos);
+  }
+}
+
 TEST_CASE("a phreatic line above the ground is warned of, with the depth, unless a pond stands there") {
   const auto told = [](double level, bool pond) {
     forget_warnings();

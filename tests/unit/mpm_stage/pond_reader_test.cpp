@@ -84,6 +84,10 @@ TEST_CASE("ponds that cannot be are refused") {
                        InputError);
   CHECK_THROWS_WITH_AS(read(R"([{"name": "a", "level": 2}, {"name": "a", "level": 3}])"),
                        doctest::Contains("two ponds"), InputError);
+  CHECK_THROWS_WITH_AS(read(R"([{"level": 2}, {"level": 3}])"), doctest::Contains("both would press"), InputError);
+  CHECK_THROWS_WITH_AS(read(R"([{"name": "a", "level": 2, "x_to": 3}, {"name": "b", "level": 2, "x_from": 2.5}])"),
+                       doctest::Contains("pond 'a' (x from -inf to 3 m)"), InputError);
+  CHECK(read(R"([{"level": 2, "x_to": 3}, {"level": 1, "x_from": 3}])").solver.ponds.size() == 2);
   CHECK_THROWS_WITH_AS(read("", "[1, -9.81]"), doctest::Contains("/gravity"), InputError);
   CHECK_THROWS_WITH_AS(read(R"([{"x_to": 1}])"), doctest::Contains("level"), InputError);
 }

@@ -23,6 +23,12 @@ std::string error_of(const std::string& json) {
 
 }  // namespace
 
+TEST_CASE("a size that the case does not have is refused, with the nearest one") {
+  const tailrun::CaseFile file(std::string(TAILRUN_SOURCE_DIR) + "/cases/mochikoshi/transfer.json");
+  CHECK_THROWS_WITH_AS(read_transfer_case(file, mochikoshi_regions, "coarze"),
+                       doctest::Contains("Did you mean 'coarse'?"), tailrun::InputError);
+}
+
 TEST_CASE("the Mochikoshi cases read without an unknown key and mean what the paper did") {
   for (const char* name : {"transfer.json", "transfer_foundation.json"}) {
     const tailrun::CaseFile file(std::string(TAILRUN_SOURCE_DIR) + "/cases/mochikoshi/" + name);
