@@ -33,11 +33,13 @@ std::string sha256_of_file(const std::filesystem::path& path) {
 }
 
 void Provenance::add_text(const std::filesystem::path& path, const std::string& text) {
+  inputs.push_back(path);
   texts.emplace_back(path.filename().string(), text);
   sha256.emplace_back(path.filename().string(), sha256_of_text(text));
 }
 
 void Provenance::add_file(const std::filesystem::path& path) {
+  inputs.push_back(path);
   sha256.emplace_back(path.filename().string(), sha256_of_file(path));
 }
 

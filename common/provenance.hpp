@@ -17,6 +17,7 @@ struct Provenance {
   std::string program;                                      // "fem_stage"
   std::vector<std::pair<std::string, std::string>> texts;   // (file name, full text) of the case files read
   std::vector<std::pair<std::string, std::string>> sha256;  // (file name, hexadecimal sum) of every input file
+  std::vector<std::filesystem::path> inputs{};              // where those are; not written
 
   void add_text(const std::filesystem::path& path, const std::string& text);  // also sums it
   void add_file(const std::filesystem::path& path);  // sum only; throws InputError if unreadable

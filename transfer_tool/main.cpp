@@ -130,7 +130,7 @@ void import(const std::string& case_path, const std::string& output_path) {
   Provenance provenance{"transfer_tool", {}, {}};
   const CaseFile file(case_path);
   const Snapshot snapshot = import_tables(file, provenance);
-  for (const auto& [table, sum] : provenance.sha256) require_no_input(output_path, table);
+  for (const auto& input : provenance.inputs) require_no_input(output_path, input);
   check_state(columns_of(snapshot, case_path, {}, true));
   const std::string title = "transfer_tool import " + case_path;
   echo_options(title, file.echo(), options_of(output_path));
