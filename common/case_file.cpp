@@ -393,4 +393,12 @@ bool CaseNode::is_list(const std::string& key) const {
   return json && json->is_array();
 }
 
+void require_size(const CaseNode& node, const std::string& size) {
+  const std::vector<std::string> sizes = node.object_or_empty("sizes").keys();
+  if (sizes.empty() || size.empty() || size == "default") return;
+  if (std::find(sizes.begin(), sizes.end(), size) == sizes.end())
+    node.fail("sizes", fmt::format("has no '{}' (asked for by --size).{} It has: {}", size, did_you_mean(size, sizes),
+                                   joined(sizes)));
+}
+
 }  // namespace tailrun

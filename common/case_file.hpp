@@ -128,4 +128,8 @@ class CaseNode {
   std::string pointer_;
 };
 
+// What `--size` asks for is an entry of the object "sizes" in `node`, or "default", or empty. Throws InputError with
+// the nearest entry; a node without sizes has one for all.
+void require_size(const CaseNode& node, const std::string& size);
+
 }  // namespace tailrun

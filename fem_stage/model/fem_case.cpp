@@ -71,9 +71,9 @@ MeshOptions read_mesh(const CaseNode& node, const std::string& size) {
       if (name == size || (size.empty() && name == "default")) mesh.parameters[key] = value;
     }
   }
-  if (!size.empty() && size != "default" && !sizes.contains(size))
-    throw InputError(fmt::format("--size {}: {} has no such entry in /mesh/sizes.{} It has: {}", size, "the case",
-                                 did_you_mean(size, keys_of(sizes)), joined(keys_of(sizes))));
+  require_size(node, size);
+  if (sizes.empty() && !size.empty() && size != "default")
+    node.fail("sizes", fmt::format("is missing, but --size {} asks for an entry of it", size));
   if (mesh.rectangle) {
     const double refine = mesh.parameters.contains("refine") ? mesh.parameters["refine"] : 1.0;
     double rows = 0.0;

@@ -254,16 +254,11 @@ namespace {
 // "grid"/"cell_size", unless "sizes" has another for the size chosen: {"coarse": {"cell_size": 2}, ...}.
 double read_cell_size(const CaseNode& root, const std::string& size) {
   double cell_size = root.object("grid").number("cell_size", "m", Range::between(1e-6, 1e5));
-  std::vector<std::string> names;
+  require_size(root, size);
   for (const auto& [name, node] : root.object_or_empty("sizes").members()) {
     const double value = node.number("cell_size", "m", Range::between(1e-6, 1e5));
     if (name == size) cell_size = value;
-    names.push_back(name);
   }
-  if (!names.empty() && !size.empty() && size != "default" &&
-      std::find(names.begin(), names.end(), size) == names.end())
-    root.fail("sizes", fmt::format("has no '{}' (asked for by --size).{} It has: {}", size, did_you_mean(size, names),
-                                   joined(names)));
   return cell_size;
 }
 

@@ -206,13 +206,12 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::touch_boundaries(int f, std::s
     }
     std::array<double, Dim> v = velocity_at(k), before{};
     const std::array<double, Dim> pushed = v;
-    const auto carried = [&] {
-      const double surface = ground_.surfaces(a)[n] * share_inside<Dim>(wall_nodes_, grid_.node_index(a, n));
-      return carried_by_soil((*gap)[n], surface, dt);
+    const auto surface = [&] {
+      return ground_.surfaces(a)[n] * share_inside<Dim>(wall_nodes_, grid_.node_index(a, n));
     };
     if (contact && contact[n].beside && options_.soil_limits_friction) {
-      grip_[k] = grip_beside(contact[n], (*gap)[n], m, carried());
-      if (const double drag = drag_beside(contact[n], (*gap)[n], ground_.surfaces(a)[n], dt); drag > 0.0) {
+      grip_[k] = grip_beside(contact[n], (*gap)[n], m, carried_by_soil((*gap)[n], surface(), dt));
+      if (const double drag = drag_beside(contact[n], (*gap)[n], surface(), dt); drag > 0.0) {
         NodeGrip stuck;
         stuck.mass = m;
         stuck.normal = contact[n].point[0].normal;
@@ -225,7 +224,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::touch_boundaries(int f, std::s
       const double share = smoothing_share(dt * h1_ * fastest_wave_, dt * h1_ * sliding_speed<Dim>(contact[n], v));
       smooth_grip(contact[n], m, dt, share, smoothed_grip_[k], grip);
       grip.carried = grip.friction;
-      if (options_.soil_limits_friction) grip.carried = carried();
+      if (options_.soil_limits_friction) grip.carried = carried_by_soil((*gap)[n], surface(), dt);
     }
     if (wall_nodes_.any) apply_walls<Dim>(wall_nodes_, grid_.node_index(a, n), m, v, sums);
     for (int d = 0; d < Dim; ++d) sums.impulse[d] += m * (v[d] - pushed[d]);

@@ -2,10 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-
-#include "common/error.hpp"
-
 namespace tailrun::transfer {
 namespace {
 
@@ -95,17 +91,11 @@ TransferCase read_transfer_case(const CaseFile& file, const std::vector<std::str
   TransferCase result;
   result.transfer_time = root.number_if("transfer_time", "s", Range::non_negative());
   read_sampling(root.object_or_empty("sampling"), region_names, result.sampling);
-  std::vector<std::string> sizes;
+  require_size(root, size);
   for (const auto& [name, node] : root.object_or_empty("sizes").members()) {
     const auto cell_size = node.number_if("cell_size", "m", Range::positive());
     if (name == size && cell_size) result.sampling.cell_size = *cell_size;
-    sizes.push_back(name);
   }
-  // A case without sizes has one, whatever the mesh was made with.
-  if (!sizes.empty() && !size.empty() && size != "default" &&
-      std::find(sizes.begin(), sizes.end(), size) == sizes.end())
-    root.fail("sizes", fmt::format("has no '{}' (asked for by --size).{} It has: {}", size, did_you_mean(size, sizes),
-                                   joined(sizes)));
   read_regions(root, region_names, result);
   result.state = read_state(root.object_or_empty("state"));
   result.rules = read_rules(root.list("rules"), region_names);
