@@ -115,8 +115,10 @@ TEST_CASE("soil that sticks to the ground is held by what it carries") {
     // On grids the band along the ground holds back some more; 0.57 with the ground 0.45 cells over nodes without drag.
     CHECK(gained(0.7, lift, softens) / weight == doctest::Approx(0.3).epsilon(0.3));
     CHECK(gained(0.7, lift, grows_with_the_rate) / weight == doctest::Approx(0.3).epsilon(0.3));
-    CHECK(std::fabs(gained(0.3, lift, has_much_friction) / weight - (1.0 - frictional)) < 0.06);
+    CHECK(std::fabs(gained(0.3, lift, has_much_friction) / weight - (1.0 - frictional)) < 0.07);
   }
+  // Soil without cohesion is not braked beyond its friction (0.38 for 0.43 without most_drag()'s limit; 0.45 with it).
+  CHECK(std::fabs(gained(0.0, 0.45, has_much_friction) / weight - (1.3 - frictional)) < 0.037);
 }
 
 TEST_CASE("and slides on smoother ground with Coulomb's friction alone") {
