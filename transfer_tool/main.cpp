@@ -30,6 +30,7 @@
 #include "transfer_tool/assign/strength_table.hpp"
 #include "transfer_tool/audit/audit.hpp"
 #include "transfer_tool/audit/particle_set.hpp"
+#include "transfer_tool/balance/equilibrate.hpp"
 #include "transfer_tool/import/import_tables.hpp"
 #include "transfer_tool/inspect/file_report.hpp"
 #include "transfer_tool/options/transfer_case.hpp"
@@ -77,6 +78,25 @@ void warn_about(const Snapshot& snapshot, const TransferCase& wanted, const std:
     }
 }
 
+// Stresses in balance on the runout's grid, said and recorded.
+void put_in_balance(const CaseFile& file, double cell_size, double gravity, ParticleSet& particles) {
+  if (!particles.ponds.empty())
+    file.root().object_or_empty("state").fail(
+        "equilibrate",
+        "is for dams without ponds: the weight of standing water on the soil is no part of this balance");
+  const Balance balance = equilibrate(particles, cell_size, gravity);
+  log_info(
+      "stresses changed by {:.3g} kPa (root mean square): forces out of balance on cells of {:g} m {:.2g} of the "
+      "weight, {:.2g} before",
+      balance.change / 1e3, cell_size, balance.after, balance.before);
+  particles.notes["balance"] = text_of_json(nlohmann::ordered_json{{"cell_size_m", cell_size},
+                                                                   {"nodes", balance.nodes},
+                                                                   {"out_of_balance_before", balance.before},
+                                                                   {"out_of_balance", balance.after},
+                                                                   {"rms_stress_change_Pa", balance.change}},
+                                            1);
+}
+
 void run(const RunOptions& options) {
   check_output_file(options.output_path, {options.case_path, options.snapshot_path, options.geostatic_path});
   Provenance provenance{"transfer_tool", {}, {}};
@@ -107,6 +127,7 @@ void run(const RunOptions& options) {
     for (auto& line : wall_lines(snapshot, kept, wanted.terrain)) particles.terrain.push_back(std::move(line));
   particles.ponds = pond_reaches(snapshot);
   check_standing_water(snapshot, kept, particles.ponds);
+  if (wanted.state.equilibrate) put_in_balance(file, wanted.sampling.cell_size, snapshot.gravity, particles);
 
   // 4. Audit
   const Audit result = audit(

@@ -336,13 +336,16 @@ double ExplicitSolver<Dim, Shape, Split, Transfer>::unbalanced_force_ratio(const
     gather_sums<Dim, Shape, true>(grid_.tiles_around(a), tiles.data(), beside.data(), m, f);
     const NodeContact* contact = ground_.of_block(a);
     for (int n = 0; n < block_nodes; ++n) {
-      if (m[n][0] <= mass_cutoff_ || (contact && contact[n].count > 0)) continue;
+      // What the ground bears counts for nothing, nor do nodes whose functions reach into it: there is its share in
+      // theirs.
+      if (m[n][0] <= mass_cutoff_ || (contact && (contact[n].count > 0 || contact[n].beside))) continue;
       bool held = false;
       const std::array<int, Dim> node = grid_.node_index(a, n);
       for (int d = 0; d < Dim; ++d)
         for (int s = 0; s < 2; ++s) {
           const auto& side = wall_nodes_.side[d][s];
-          held = held || (side.kind != WallKind::open && (s == 0 ? node[d] <= side.node : node[d] >= side.node));
+          held =
+              held || (side.kind != WallKind::open && (s == 0 ? node[d] <= side.node + 1 : node[d] >= side.node - 1));
         }
       if (held) continue;
       for (int d = 0; d < Dim; ++d) {

@@ -25,6 +25,7 @@ struct MapOptions {
   bool maximum_pressure_ratio = false;          // largest r_u so far instead of the one at the snapshot's time
   bool depth_of_point = true;                   // below the initial ground surface; otherwise the element's
   bool remove_base_motion = true;
+  bool equilibrate = false;  // stresses in balance on the particle stage's grid: balance/equilibrate.hpp
 };
 
 // Structure of arrays over the points.

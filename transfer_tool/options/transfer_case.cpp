@@ -80,6 +80,7 @@ MapOptions read_state(const CaseNode& node) {
       node.choice_or("pressure_ratio_time", {"at_transfer", "maximum_so_far"}, "at_transfer") == "maximum_so_far";
   state.depth_of_point = node.choice_or("depth", {"point", "element"}, "point") == "point";
   state.remove_base_motion = node.choice_or("base_motion", {"remove", "keep"}, "remove") == "remove";
+  state.equilibrate = node.boolean_or("equilibrate", false);
   return state;
 }
 
