@@ -24,6 +24,9 @@ class Hdf5Writer {
   Hdf5Writer(const Hdf5Writer&) = delete;
   Hdf5Writer& operator=(const Hdf5Writer&) = delete;
 
+  // Whether arrays of doubles are stored in single precision from here on: half the bytes, seven digits. Readers get
+  // doubles again.
+  void store_singles(bool yes) { singles_ = yes; }
   void group(const std::string& name);  // parents are made as needed
   // Row-major arrays; `columns` 0 makes a vector, otherwise rows x columns. Deflated when large.
   // All of these throw ComputationError, with the system's reason (no space left ...) where there is one.
@@ -45,7 +48,7 @@ class Hdf5Writer {
   void make_parents(const std::string& name);
   std::filesystem::path final_, temporary_;
   hid_t file_ = -1;
-  bool committed_ = false;
+  bool committed_ = false, singles_ = false;
 };
 
 class Hdf5Reader {

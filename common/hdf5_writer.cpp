@@ -65,11 +65,12 @@ void write_text_attribute(hid_t object, const std::string& name, const std::stri
   write_attribute(object, name, type, space, value.c_str());
 }
 
-void write_dataset(hid_t file, const std::string& name, hid_t type, int rank, const hsize_t* shape, std::size_t values,
-                   const void* data, const std::string& unit, const std::string& description) {
+// `type` in memory, `stored` in the file.
+void write_dataset(hid_t file, const std::string& name, hid_t type, hid_t stored, int rank, const hsize_t* shape,
+                   std::size_t values, const void* data, const std::string& unit, const std::string& description) {
   Hdf5Handle space(H5Screate_simple(rank, shape, nullptr), H5Sclose);
   const Hdf5Handle link = with_parents(), create = dataset_properties(rank, shape, values);
-  Hdf5Handle dataset(H5Dcreate2(file, name.c_str(), type, space, link, create, H5P_DEFAULT), H5Dclose);
+  Hdf5Handle dataset(H5Dcreate2(file, name.c_str(), stored, space, link, create, H5P_DEFAULT), H5Dclose);
   if (dataset < 0) throw ComputationError("HDF5: cannot make dataset " + name);
   if (values > 0) check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "write " + name);
   write_text_attribute(dataset, "unit", unit);
@@ -77,11 +78,11 @@ void write_dataset(hid_t file, const std::string& name, hid_t type, int rank, co
 }
 
 template <typename T>
-void write_array(hid_t file, const std::string& name, hid_t type, std::span<const T> values, std::size_t columns,
-                 const std::string& unit, const std::string& description) {
+void write_array(hid_t file, const std::string& name, hid_t type, hid_t stored, std::span<const T> values,
+                 std::size_t columns, const std::string& unit, const std::string& description) {
   if (columns && values.size() % columns) throw std::logic_error(name + ": length is not a multiple of its columns");
   const hsize_t shape[2] = {columns ? values.size() / columns : values.size(), columns};
-  write_dataset(file, name, type, columns ? 2 : 1, shape, values.size(), values.data(), unit, description);
+  write_dataset(file, name, type, stored, columns ? 2 : 1, shape, values.size(), values.data(), unit, description);
 }
 
 }  // namespace
@@ -118,22 +119,23 @@ void Hdf5Writer::group(const std::string& name) {
 void Hdf5Writer::write(const std::string& name, std::span<const double> values, std::size_t columns,
                        const std::string& unit, const std::string& description) {
   make_parents(name);
-  write_array(file_, name, H5T_NATIVE_DOUBLE, values, columns, unit, description);
+  write_array(file_, name, H5T_NATIVE_DOUBLE, singles_ ? H5T_NATIVE_FLOAT : H5T_NATIVE_DOUBLE, values, columns, unit,
+              description);
 }
 void Hdf5Writer::write(const std::string& name, std::span<const std::int64_t> values, std::size_t columns,
                        const std::string& unit, const std::string& description) {
   make_parents(name);
-  write_array(file_, name, H5T_NATIVE_INT64, values, columns, unit, description);
+  write_array(file_, name, H5T_NATIVE_INT64, H5T_NATIVE_INT64, values, columns, unit, description);
 }
 void Hdf5Writer::write(const std::string& name, std::span<const std::int32_t> values, std::size_t columns,
                        const std::string& unit, const std::string& description) {
   make_parents(name);
-  write_array(file_, name, H5T_NATIVE_INT32, values, columns, unit, description);
+  write_array(file_, name, H5T_NATIVE_INT32, H5T_NATIVE_INT32, values, columns, unit, description);
 }
 void Hdf5Writer::write(const std::string& name, std::span<const std::uint8_t> values, const std::string& unit,
                        const std::string& description) {
   make_parents(name);
-  write_array(file_, name, H5T_NATIVE_UINT8, values, 0, unit, description);
+  write_array(file_, name, H5T_NATIVE_UINT8, H5T_NATIVE_UINT8, values, 0, unit, description);
 }
 
 void Hdf5Writer::write_texts(const std::string& name, const std::vector<std::string>& values,
@@ -145,7 +147,7 @@ void Hdf5Writer::write_texts(const std::string& name, const std::vector<std::str
   for (std::size_t i = 0; i < values.size(); ++i) packed.replace(i * length, values[i].size(), values[i]);
   const Hdf5Handle type = fixed_text_type(length);
   const hsize_t shape[1] = {values.size()};
-  write_dataset(file_, name, type, 1, shape, values.size(), packed.data(), "1", description);
+  write_dataset(file_, name, type, type, 1, shape, values.size(), packed.data(), "1", description);
 }
 
 void Hdf5Writer::attribute(const std::string& object, const std::string& name, const std::string& value) {

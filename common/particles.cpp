@@ -117,12 +117,14 @@ void check_lengths(const ParticleSet& particles) {
 
 }  // namespace
 
-void write_particles(const std::filesystem::path& path, const ParticleSet& particles, const Provenance& provenance) {
+void write_particles(const std::filesystem::path& path, const ParticleSet& particles, const Provenance& provenance,
+                     Precision precision) {
   check_lengths(particles);
   Hdf5Writer file(path);
   std::vector<std::int64_t> vertices(particles.count());
   std::iota(vertices.begin(), vertices.end(), 0);
   write_unstructured_grid(file, particles.position, vertices, 1, vtk_vertex);
+  file.store_singles(precision == Precision::single);
   for (const auto& field : fields()) {
     const auto& values = particles.*field.values;
     if (values.empty() && field.optional) continue;
@@ -145,6 +147,7 @@ void write_particles(const std::filesystem::path& path, const ParticleSet& parti
     file.write(data + name, std::span<const double>(values), 0, unit == particles.extra_unit.end() ? "1" : unit->second,
                "further field of the program that wrote this file");
   }
+  file.store_singles(false);
 
   write_format(file, format_name, particles_format_version);
   file.attribute("/tailrun", "dimension", static_cast<double>(particles.dimension));

@@ -59,8 +59,12 @@ struct ParticleSet {
   int components() const { return dimension == 2 ? 4 : 6; }
 };
 
-// Throws ComputationError when it cannot be written, std::logic_error when array lengths disagree.
-void write_particles(const std::filesystem::path& path, const ParticleSet& particles, const Provenance& provenance);
+enum class Precision { single, full };
+
+// Throws ComputationError when it cannot be written, std::logic_error when array lengths disagree. In single precision
+// the fields of the particles take half the bytes; positions and all else stay double.
+void write_particles(const std::filesystem::path& path, const ParticleSet& particles, const Provenance& provenance,
+                     Precision fields = Precision::full);
 
 // Throws InputError: missing or truncated file, other format or version, a dataset missing or of the wrong shape,
 // values that are not finite, masses or volumes that are not positive.

@@ -79,8 +79,8 @@ ParticleSet particle_set(const Scene& scene, const Particles<Dim>& P, double tim
 template ParticleSet particle_set<2>(const Scene&, const Particles<2>&, double);
 template ParticleSet particle_set<3>(const Scene&, const Particles<3>&, double);
 
-FrameWriter::FrameWriter(std::filesystem::path folder, Provenance provenance)
-    : folder_(std::move(folder)), provenance_(std::move(provenance)) {
+FrameWriter::FrameWriter(std::filesystem::path folder, Provenance provenance, Precision precision)
+    : folder_(std::move(folder)), provenance_(std::move(provenance)), precision_(precision) {
   std::filesystem::create_directories(folder_);
 }
 
@@ -108,7 +108,7 @@ void FrameWriter::write(ParticleSet set) {
   times_.push_back(set.time);
   thread_ = std::thread([this, path = folder_ / names_.back(), set = std::move(set)] {
     try {
-      write_particles(path, set, provenance_);
+      write_particles(path, set, provenance_, precision_);
       write_index();
     } catch (const std::filesystem::filesystem_error& error) {
       error_ = std::make_exception_ptr(ComputationError("cannot write " + words_for(error)));

@@ -21,7 +21,7 @@ ParticleSet particle_set(const Scene& scene, const Particles<Dim>& P, double tim
 
 class FrameWriter {
  public:
-  FrameWriter(std::filesystem::path folder, Provenance provenance);
+  FrameWriter(std::filesystem::path folder, Provenance provenance, Precision precision);
   ~FrameWriter();
 
   // Waits for the frame before, then writes this one in the background. Throws what the frame before threw.
@@ -38,6 +38,7 @@ class FrameWriter {
   void write_index() const;
   std::filesystem::path folder_;
   Provenance provenance_;
+  Precision precision_;
   std::vector<std::string> names_;
   std::vector<double> times_;
   std::thread thread_;

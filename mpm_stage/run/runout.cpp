@@ -88,7 +88,7 @@ class Runout {
         front_(scene),
         bodies_(names_of(scene.walls.bodies)),
         sections_(scene),
-        frames_(folder / "frames", provenance) {}
+        frames_(folder / "frames", provenance, scene.output.frame_precision) {}
 
   void run() {
     if (control_.resume)

@@ -42,7 +42,8 @@ struct FlowSection {
 };
 
 struct OutputOptions {
-  double frame_interval = 1.0;    // s of simulated time; 0: no frames
+  double frame_interval = 1.0;  // s of simulated time; 0: no frames
+  Precision frame_precision = Precision::full;
   double series_interval = 0.05;  // s
   int front_axis = 0;             // coordinate along which the front runs
   double front_sign = 1.0;        // +1: towards larger coordinates

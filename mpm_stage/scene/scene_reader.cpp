@@ -112,6 +112,8 @@ void read_output(const CaseNode& root, Scene& scene) {
   const CaseNode node = root.object_or_empty("output");
   OutputOptions& o = scene.output;
   o.frame_interval = node.number_or("frame_interval", "s", Range::non_negative(), o.frame_interval);
+  o.frame_precision = node.choice_or("frame_precision", {"double", "single"}, "double") == "single" ? Precision::single
+                                                                                                    : Precision::full;
   o.series_interval = node.number_or("series_interval", "s", Range::positive(), o.series_interval);
   const std::string direction = node.choice_or("front_direction", {"+x", "-x", "+y", "-y", "+z", "-z"}, "+x");
   o.front_sign = direction[0] == '+' ? 1.0 : -1.0;

@@ -78,6 +78,19 @@ TEST_CASE("a snapshot comes back as it was") {
   CHECK_FALSE(std::filesystem::exists(path.string() + ".part"));
 }
 
+TEST_CASE("in single precision a particle's fields come back with seven digits, its place as it was") {
+  const auto path = folder / "tailrun_single.h5";
+  ParticleSet p = small_particles();
+  p.volume = {0.1, 1.0 / 3.0};
+  p.position[0] = 1.0 / 3.0;
+  write_particles(path, p, {}, tailrun::Precision::single);
+  const ParticleSet r = read_particles(path);
+  CHECK(r.volume[1] != p.volume[1]);
+  CHECK(r.volume[1] == doctest::Approx(p.volume[1]).epsilon(1e-7));
+  CHECK(r.position == p.position);
+  CHECK(r.terrain[0].points == p.terrain[0].points);
+}
+
 TEST_CASE("particles come back as they were, with further fields and notes") {
   const auto path = folder / "tailrun_particles.h5";
   const ParticleSet p = small_particles();

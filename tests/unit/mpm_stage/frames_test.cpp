@@ -35,7 +35,7 @@ ParticleSet two_particles(double time) {
 
 TEST_CASE("frames written in the background are all there after a wait, and a failure comes back to the computation") {
   const auto folder = std::filesystem::temp_directory_path() / ("tailrun_frames_" + std::to_string(getpid()));
-  FrameWriter frames(folder, Provenance{});
+  FrameWriter frames(folder, Provenance{}, tailrun::Precision::full);
   for (int k = 0; k < 3; ++k) frames.write(two_particles(k));
   frames.wait();
   CHECK(frames.count() == 3);
