@@ -18,6 +18,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <type_traits>
 
 #include "common/error.hpp"
 #include "mpm_stage/boundary/contact_gap.hpp"
@@ -33,6 +34,7 @@
 #include "mpm_stage/grid/tiles.hpp"
 #include "mpm_stage/material/stress_update.hpp"
 #include "mpm_stage/step/grid_update.hpp"
+#include "mpm_stage/step/lone_particle.hpp"
 #include "mpm_stage/step/sleeping_blocks.hpp"
 #include "mpm_stage/step/solver.hpp"
 #include "mpm_stage/step/surface_age.hpp"
@@ -41,6 +43,7 @@
 #include "mpm_stage/transfer/mass_matrix.hpp"
 #include "mpm_stage/transfer/particles_to_grid.hpp"
 #include "mpm_stage/transfer/patch_filling.hpp"
+#include "mpm_stage/transfer/sparse_patches.hpp"
 #include "mpm_stage/transfer/volumetric_projection.hpp"
 
 namespace tailrun::mpm {
@@ -77,6 +80,8 @@ class ExplicitSolver final : public Solver<Dim> {
       averaging_ = averaging_ || constants_.back().averaged;
     }
     if (averaging_) filling_ = PatchFilling<Dim>(options.crowding_relief);
+    if constexpr (Dim == 2 && std::is_same_v<Shape, QuadraticShape>)
+      if (averaging_ && options.courant > longest_courant<Shape>(Dim)) sparse_.cell = h_ * h_;
     limit_volumes();
     if (walls.bounded && walls.leaving == LeavingParticles::wall) {
       std::int32_t most = 0;
@@ -377,6 +382,7 @@ class ExplicitSolver final : public Solver<Dim> {
   SleepingBlocks<Dim> sleep_;
   PondedWater<Dim> water_;
   PatchFilling<Dim> filling_;
+  SparsePatches sparse_;
   double water_potential_ = 0.0;      // J, PondedWater::potential of all particles
   std::vector<double> water_levels_;  // m, for which that is
   bool averaging_ = false, leaving_ = false, starts_with_spin_ = false;

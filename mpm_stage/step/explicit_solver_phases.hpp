@@ -131,7 +131,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::average(bool sorted) {
   for (std::size_t a = 0; a < grid_.active(); ++a) {
     PatchSum sum[block_nodes];
     gather_tiles<Dim, Shape>(grid_.tiles_around(a), averaged_tiles_.data(), sum);
-    fit_patches<Dim>(sum, averaged_.data() + a * block_nodes);
+    fit_patches<Dim>(sum, averaged_.data() + a * block_nodes, sparse_);
     if (filling_.active()) filling_.compare(a, sum);
   }
   if (filling_.active()) {
@@ -187,8 +187,8 @@ StressWork ExplicitSolver<Dim, Shape, Split, Transfer>::update_stresses_of(std::
     for (std::size_t begin = run.begin; begin < run.end; begin += few_particles) {
       const std::size_t end = std::min(run.end, begin + few_particles);
       if (k.averaged) {
-        work.crowding +=
-            gather_volumetric<Dim, Shape>(k, P_, begin, end, corner(b), h1_, fit, filling_.relief(), trace);
+        work.crowding += gather_volumetric<Dim, Shape>(k, P_, begin, end, corner(b), h1_, fit, filling_.relief(), trace,
+                                                       sparse_.active());
       } else {
         own_volumetric(P_, begin, end, trace);
       }

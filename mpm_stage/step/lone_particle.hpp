@@ -5,7 +5,7 @@
 // modulus M of equal strain in all directions, up to Dim rho c^2, that grows from
 //   M dt^2 / (rho h^2) = 4 / S           where particles carry the velocity's gradient (linear functions, GIMP),
 //                        2 / (S - 2)     where they carry the affine velocity of B-splines
-// on, at the worst place in a cell.
+// on, at the worst place in a cell. Where sparse soil is softened (transfer/sparse_patches.hpp), steps may be longer.
 #pragma once
 
 #include <cmath>

@@ -29,6 +29,7 @@
 #include "mpm_stage/grid/block_grid.hpp"
 #include "mpm_stage/grid/simd.hpp"
 #include "mpm_stage/material/material.hpp"
+#include "mpm_stage/transfer/sparse_patches.hpp"
 
 namespace tailrun::mpm {
 
@@ -37,7 +38,8 @@ namespace tailrun::mpm {
 // and the mass of number 2; number 4, in 3-D, is a (X_1 X_2, X_2 X_0, 0, 0).
 using PatchSum = Vec4;
 // A patch's linear function: number 0 is the value at its centre and the slopes per cell, Pa; number 1 is the share of
-// the way to it that the particles go, and the patch's crowding (patch_filling.hpp).
+// the way to it that the particles go, the patch's crowding (patch_filling.hpp), and the share of its increments that
+// sparse soil takes (sparse_patches.hpp).
 using PatchFit = Vec4;
 
 // What the elastic law has for changes of volume.
@@ -146,7 +148,7 @@ void scatter_volumetric(const MaterialConstants& material, const Particles<Dim>&
 // the particles go but a share of the way, the same in the whole patch, so that all of the above still holds: as much
 // as gives them volumetric increments of 0.02 (root mean square). Elsewhere increments are far below.
 template <int Dim>
-void fit_patches(const PatchSum* sum, PatchFit* fit) {
+void fit_patches(const PatchSum* sum, PatchFit* fit, const SparsePatches& sparse = {}) {
   constexpr int B = Block<Dim>::cells, layers = Dim == 2 ? 1 : B;
   constexpr double ridge = 1e-12, most = 0.02;
   for (int k = 0; k < layers; k += 2)
@@ -188,8 +190,11 @@ void fit_patches(const PatchSum* sum, PatchFit* fit) {
           out[0] -= x[d] * slope[d];
           out[1 + d] = slope[d];
         }
-        const double allowed = most * s[patch_offset<B>(1)][3] * per_weight;
-        (&out)[patch_offset<B>(1)] = Vec4{rest > allowed * allowed ? allowed / std::sqrt(rest) : 1.0, 0.0, 0.0, 0.0};
+        const double volume = s[patch_offset<B>(1)][3], allowed = most * volume * per_weight;
+        double spread = 0.0;
+        for (int d = 0; d < Dim; ++d) spread += C[d][d];
+        (&out)[patch_offset<B>(1)] = Vec4{rest > allowed * allowed ? allowed / std::sqrt(rest) : 1.0, 0.0,
+                                          sparse.active() ? sparse.share(volume, spread) : 1.0, 0.0};
       }
 }
 
@@ -210,12 +215,13 @@ template <int Dim, class G>
 }
 
 // `fit` is the tile of the patches' functions. increment[0 .. end - begin) is the volumetric increment e' for the
-// stress update; where patches are crowded, less `relief` of that per unit of shear strain. Returns the elastic energy
-// (J, per metre in plane strain) that the particles get by that.
+// stress update; where patches are crowded, less `relief` of that per unit of shear strain; with `soften` the share of
+// it that sparse patches take. Returns the elastic energy (J, per metre in plane strain) that the particles get by the
+// relief.
 template <int Dim, class Shape>
 double gather_volumetric(const MaterialConstants& material, const Particles<Dim>& P, std::size_t begin, std::size_t end,
                          const std::array<double, Dim>& corner, double h1, const PatchFit* fit, double relief,
-                         double* increment) {
+                         double* increment, bool soften = false) {
   constexpr int T = Tile<Dim, Shape>::side;
   constexpr double most = 0.01;  // of volumetric strain in a step
   const VolumetricLaw<Dim> law(material);
@@ -261,6 +267,8 @@ double gather_volumetric(const MaterialConstants& material, const Particles<Dim>
           }
           e -= d;
         }
+        if (soften)
+          e *= Vec4{second[in.first[0]][2], second[in.first[1]][2], second[in.first[2]][2], second[in.first[3]][2]};
         of_run.write(increment, e);
       });
   return sum_of_lanes(given);
