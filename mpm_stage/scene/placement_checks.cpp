@@ -22,6 +22,31 @@ std::string material_of(const Scene& scene, std::size_t p) {
   return scene.materials[static_cast<std::size_t>(scene.particles.material_id[p])].name;
 }
 
+// What lies outside of the domain would leave it in the first step: an error unless the scene says what becomes of it,
+// and one in any case where nothing is left.
+void check_inside_domain(const CaseNode& root, const Scene& scene) {
+  const Walls<3>& walls = scene.walls;
+  if (!walls.bounded) return;
+  const ParticleSet& set = scene.particles;
+  std::size_t outside = 0, first = 0;
+  for (std::size_t p = 0; p < set.count(); ++p) {
+    bool inside = true;
+    for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimension); ++d)
+      inside = inside && set.position[3 * p + d] >= walls.low[d] && set.position[3 * p + d] <= walls.high[d];
+    if (inside || outside++ > 0) continue;
+    first = p;
+  }
+  if (outside == 0) return;
+  const std::string found = fmt::format(
+      "{} of {} particles lie outside of the domain, which goes from {} to {}; the first is '{}' at {}", outside,
+      set.count(), place_text(walls.low.data(), set.dimension), place_text(walls.high.data(), set.dimension),
+      material_of(scene, first), place_text(&set.position[3 * first], set.dimension));
+  if (walls.leaving == LeavingParticles::error || outside == set.count()) root.fail("domain", found);
+  root.warn("domain", fmt::format("{}; leaving_particles {} in the first step", found,
+                                  walls.leaving == LeavingParticles::remove ? "'remove' takes them out"
+                                                                            : "'wall' moves them to its sides"));
+}
+
 // Material lies on the left of a line. Nothing holds what lies on its right, and a line drawn from the wrong end has
 // all of it there.
 void check_sides(const CaseNode& root, Scene& scene) {
@@ -123,6 +148,7 @@ std::string place_text(const double* x, int dimension) {
 }
 
 void check_placement(const CaseNode& root, Scene& scene) {
+  check_inside_domain(root, scene);
   check_sides(root, scene);
   check_duplicates(root, scene);
   check_room(scene);

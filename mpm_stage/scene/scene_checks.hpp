@@ -1,0 +1,25 @@
+// What a scene says that can be computed but is no soil on this earth: most often a number in another unit or a sign.
+// What nothing sensible can follow from is an InputError, what is only unlikely a warning (common/warnings.hpp); each
+// names its key, what was found and where. They need the whole scene, so they come when all else has been read.
+#pragma once
+
+#include "mpm_stage/scene/scene.hpp"
+
+namespace tailrun::mpm {
+
+// Its size (9.6 to 10.1 m/s2 on earth; scenes without gravity are patches and waves), and its direction: over 60
+// degrees off -y is a warning, for y is up; an error where neither ground nor walls stand against it
+// (gravity_checks.cpp).
+void check_gravity(const CaseNode& root, const Scene& scene);
+
+// Of particles and bodies at the start: beyond 1000 m/s an error; beyond 100 m/s, or faster than the waves in the
+// material, a warning (speed_checks.cpp).
+void check_speeds(const CaseNode& root, const Scene& scene);
+
+// Entries of "materials": common/plausible_material.hpp, and keys that only mpm.json has (material_checks.cpp).
+void check_materials(const CaseNode& root, const Scene& scene);
+
+// Ponds off the scene, without any water, or far over all soil (pond_checks.cpp).
+void check_ponds(const CaseNode& root, const Scene& scene);
+
+}  // namespace tailrun::mpm
