@@ -69,6 +69,13 @@ void check_softening(const CaseNode& material, const Material& m, double cell_si
                     length, thinnest_band, widest_band, length / cell_size));
 }
 
+// Strengths over sigma'_v0 in kPa.
+void check_table(const CaseNode& node, const Material& m) {
+  double most = 0.0;
+  for (std::size_t i = 1; i < m.cohesion_table.size(); i += 2) most = std::max(most, m.cohesion_table[i]);
+  check_residual_strength(node, "cohesion_table", most);
+}
+
 }  // namespace
 
 void check_materials(const CaseNode& root, const Scene& scene) {
@@ -91,7 +98,9 @@ void check_materials(const CaseNode& root, const Scene& scene) {
       check_water_stiffness(node, "pore_stiffness", *stiffness, setting.gravity);
     const auto material = std::find_if(scene.materials.begin(), scene.materials.end(),
                                        [&name = name](const Material& m) { return m.name == name; });
-    if (material != scene.materials.end()) check_softening(node, *material, scene.cell_size);
+    if (material == scene.materials.end()) continue;
+    check_softening(node, *material, scene.cell_size);
+    if (setting.gravity > 0.0) check_table(node, *material);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "common/log.hpp"
@@ -83,6 +84,29 @@ void check_sides(const CaseNode& root, Scene& scene) {
   }
 }
 
+// Soil that nothing carries falls until it meets the ground: where that is farther below than the soil is high, one of
+// the two is on another datum.
+void check_hanging(const CaseNode& root, const Scene& scene) {
+  if (scene.terrain.empty() || scene.walls.any_wall() || !scene.walls.bodies.empty()) return;
+  const ParticleSet& set = scene.particles;
+  double least = std::numeric_limits<double>::infinity(), low = least, high = -least;
+  std::size_t nearest = 0;
+  for (std::size_t p = 0; p < set.count(); ++p) {
+    const double* x = &set.position[3 * p];
+    low = std::min(low, x[1]);
+    high = std::max(high, x[1]);
+    const double d = scene.terrain.distance(x[0], x[1]);
+    if (d >= least) continue;
+    least = d;
+    nearest = p;
+  }
+  if (least > std::max(4.0 * scene.cell_size, high - low))
+    root.warn("terrain",
+              fmt::format("all soil hangs in the air: the particle nearest to the ground is {:.4g} m off ('{}' "
+                          "at {}); are soil and ground heights y of one datum?",
+                          least, material_of(scene, nearest), place_text(&set.position[3 * nearest], set.dimension)));
+}
+
 // Rows of particles in the same place: the same particle twice.
 void check_duplicates(const CaseNode& root, const Scene& scene) {
   const ParticleSet& set = scene.particles;
@@ -150,6 +174,7 @@ std::string place_text(const double* x, int dimension) {
 void check_placement(const CaseNode& root, Scene& scene) {
   check_inside_domain(root, scene);
   check_sides(root, scene);
+  check_hanging(root, scene);
   check_duplicates(root, scene);
   check_room(scene);
 }

@@ -35,6 +35,20 @@ double fastest_wave(const Scene& scene) {
   return std::sqrt(squared);
 }
 
+// s, that viscous stress allows, as the solver has it at the start; infinite without any.
+double viscous_step(const Scene& scene) {
+  std::vector<double> viscosity;
+  for (const auto& material : scene.materials)
+    viscosity.push_back(constants_of(material, scene.cell_size).explicit_viscosity);
+  double step = std::numeric_limits<double>::infinity();
+  const double area = scene.cell_size * scene.cell_size;
+  for (std::size_t p = 0; p < scene.particles.count(); ++p)
+    if (const double eta = viscosity[static_cast<std::size_t>(scene.particles.material_id[p])]; eta > 0.0)
+      step = std::min(step, scene.solver.courant * area * scene.particles.mass[p] / scene.particles.volume[p] /
+                                (2.0 * scene.dimension * eta));
+  return step;
+}
+
 void check_grid(const CaseNode& root, const Scene& scene) {
   const ParticleSet& set = scene.particles;
   double farthest = 0.0;
@@ -80,6 +94,11 @@ void check_requests(const CaseNode& root, const Scene& scene) {
   check_grid(root, scene);
   const double duration = likely_duration(scene), wave = fastest_wave(scene);
   const double step = std::min(scene.solver.courant * scene.cell_size / wave, scene.solver.maximum_step);
+  if (const double viscous = viscous_step(scene); viscous < step && !(duration / viscous <= most_steps))
+    root.fail("materials",
+              fmt::format("{:.3g} steps of {:.3g} s are needed for {:g} s, but at most {:g} are allowed: the "
+                          "viscosity of a fluid asks for that on cells of {:g} m (water has 0.001 Pa s)",
+                          duration / viscous, viscous, duration, most_steps, scene.cell_size));
   if (!(duration / step <= most_steps))
     root.fail(
         "time",

@@ -12,12 +12,16 @@ namespace tailrun::mpm {
 // (gravity_checks.cpp).
 void check_gravity(const CaseNode& root, const Scene& scene);
 
-// Of particles and bodies at the start: beyond 1000 m/s an error; beyond 100 m/s, or faster than the waves in the
-// material, a warning (speed_checks.cpp).
-void check_speeds(const CaseNode& root, const Scene& scene);
+// Velocities of particles and bodies at the start: beyond 1000 m/s an error; beyond 100 m/s, or faster than the waves
+// in the material, a warning. Stresses of particles made here: beyond ten times the weight of the soil
+// (start_checks.cpp).
+void check_start(const CaseNode& root, const Scene& scene);
 
 // Entries of "materials": common/plausible_material.hpp, and keys that only mpm.json has (material_checks.cpp).
 void check_materials(const CaseNode& root, const Scene& scene);
+
+// Speeds and shares that end a run, put soil to sleep or switch off a guard (threshold_checks.cpp).
+void check_thresholds(const CaseNode& root, const Scene& scene);
 
 // Ponds off the scene, without any water, or far over all soil (pond_checks.cpp).
 void check_ponds(const CaseNode& root, const Scene& scene);

@@ -286,11 +286,12 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
   assign_strength(file, scene);
   check_gravity(root, scene);
   check_materials(root, scene);
-  check_speeds(root, scene);
+  check_start(root, scene);
   check_ponds(root, scene);
   check_handed_over(scene);
   read_base_motion(root, scene);
   read_output(root, scene);
+  check_thresholds(root, scene);
   warn_of_long_steps(scene);
   check_requests(root, scene);
   return scene;

@@ -1,6 +1,7 @@
 // What can be computed but is no soil on this earth is refused or warned of; what is merely unusual is read in silence.
 #include <doctest/doctest.h>
 
+#include "tests/unit/mpm_stage/four_particles.hpp"
 #include "tests/unit/mpm_stage/small_scene.hpp"
 
 using namespace tailrun;
@@ -149,4 +150,46 @@ TEST_CASE("particles outside of the domain are refused before anything is comput
           "is 'soil' at (3.125, 0.125) m");
   warned(domain + R"(, "leaving_particles": "remove"}})", "takes them out in the first step");
   refused(R"({"domain": {"low": [5, -1], "high": [9, 3], "leaving_particles": "remove"}})", "128 of 128 particles");
+}
+
+TEST_CASE("stresses of another datum, and a surface under the shape") {
+  silent(shape(R"("stress": {"kind": "geostatic", "surface": 2})"));
+  warned(shape(R"("stress": {"kind": "geostatic", "surface": 400})"),
+         "vertical stresses of up to 7.85e+06 Pa are given");
+  warned(shape(R"("stress": {"kind": "geostatic", "surface": -1})"),
+         "/particles/0/stress: gives no stress: its surface, y = -1 m");
+}
+
+TEST_CASE("soil that hangs far over the ground") {
+  silent(R"({"terrain": [{"points": [[-50, -1], [50, -1]], "friction": 0.5}]})");
+  warned(R"({"terrain": [{"points": [[-50, -400], [50, -400]], "friction": 0.5}]})",
+         "/terrain: all soil hangs in the air: the particle nearest to the ground is 400.1 m off");
+}
+
+TEST_CASE("thresholds that decide over the result") {
+  silent(R"({"sleep": {"speed": 0.01}})");
+  warned(R"({"time": {"rest": {"speed": 10}}})",
+         "/time/rest/speed: 10 m/s: soil that flows more slowly counts as at rest");
+  warned(R"({"sleep": {"speed": 1}})", "/sleep/speed: 1 m/s");
+  warned(R"({"time": {"energy_growth_limit": 1}})", "/time/energy_growth_limit: 1 is 100 %");
+  warned(R"({"output": {"flow_distance": 1e5}})", "/output/flow_distance: 100000 m");
+}
+
+TEST_CASE("a viscosity that asks for steps without end") {
+  silent(fluid(R"("density": 1000, "bulk_modulus": 2e6, "viscosity": 1)"));
+  refused(fluid(R"("density": 1000, "bulk_modulus": 2e6, "viscosity": 1e12)"), "/materials: 3.2e+10 steps of");
+}
+
+TEST_CASE("strengths of a table in kPa") {
+  const auto path =
+      std::filesystem::temp_directory_path() / ("tailrun_scene_checks_" + std::to_string(getpid()) + ".h5");
+  ParticleSet particles = four_particles({"soil"});
+  particles.initial_vertical_effective_stress.assign(4, 1e4);
+  write_particles(path, particles, {});
+  const auto with = [&path](const std::string& table) {
+    return answer_to(small_scene_with(soil(R"("cohesion": "table", "cohesion_table": )" + table)), path);
+  };
+  CHECK(with("[[0, 1], [1e5, 20]]").warns("/materials/soil/cohesion_table: 20 Pa is a thousandth"));
+  CHECK(!with("[[0, 1000], [1e5, 20000]]").warns("cohesion_table"));
+  std::filesystem::remove(path);
 }

@@ -1,6 +1,7 @@
-// Velocities at the start that no soil has.
+// Velocities and stresses at the start that no soil has.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/error.hpp"
@@ -75,11 +76,38 @@ void check_bodies(const CaseNode& root, const Scene& scene) {
   }
 }
 
+// Stresses given to particles made here, against the weight of all soil above the lowest (those of a file are judged by
+// common/plausible_state.hpp).
+void check_stresses(const CaseNode& root, const Scene& scene) {
+  const ParticleSet& set = scene.particles;
+  const double gravity = std::hypot(scene.gravity[0], scene.gravity[1], scene.gravity[2]);
+  if (!scene.inputs.empty() || !(gravity > 0.0)) return;
+  double low = set.position[1], high = low, most = 0.0, density = 0.0;
+  std::size_t place = 0;
+  for (std::size_t p = 0; p < set.count(); ++p) {
+    low = std::min(low, set.position[3 * p + 1]);
+    high = std::max(high, set.position[3 * p + 1]);
+    density = std::max(density, set.mass[p] / set.volume[p]);
+    const double stress = std::fabs(set.effective_stress[static_cast<std::size_t>(set.components()) * p + 1]);
+    if (stress <= most) continue;
+    most = stress;
+    place = p;
+  }
+  constexpr double most_weights = 10.0;
+  const double height = std::max(high - low, scene.cell_size), weight = density * gravity * height;
+  if (most > most_weights * weight)
+    root.warn("particles",
+              fmt::format("vertical stresses of up to {:.3g} Pa are given (at {}), but {:.3g} m of this soil "
+                          "weigh {:.3g} Pa: is the surface of stress a height y of the scene, in m?",
+                          most, place_text(&set.position[3 * place], set.dimension), height, weight));
+}
+
 }  // namespace
 
-void check_speeds(const CaseNode& root, const Scene& scene) {
+void check_start(const CaseNode& root, const Scene& scene) {
   check_particles(root, scene);
   check_bodies(root, scene);
+  check_stresses(root, scene);
 }
 
 }  // namespace tailrun::mpm
