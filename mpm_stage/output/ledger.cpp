@@ -18,12 +18,13 @@ double losses(const WorkDone& w) {
 }
 
 // What may help, by where the energy came from. A shorter step brings down what the integration in time makes, and
-// nothing else. Friction of ground that reaches into a body is booked with the sliding that the body then stops.
+// nothing else. Friction of ground that reaches into a body (nodes up to two cells under the ground grip, too) is
+// booked with the sliding that the body then stops.
 std::string advice(const LedgerRow& now, bool bodies) {
   if (!std::isfinite(now.total())) return "a shorter time step (time/courant) may help";
   if (bodies && now.work.friction > 0.0)
     return "where bodies reach to ground that soil slides on, friction is booked for a sliding that they stop: let "
-           "them end a cell off the ground; if they do, a shorter time step (time/courant) may help";
+           "them end two cells off the ground; if they do, a shorter time step (time/courant) may help";
   if (std::isnan(now.work.transfer))
     return "if a shorter time step (time/courant) does not help, another scheme/transfer may, or a higher "
            "scheme/fmpm_order";

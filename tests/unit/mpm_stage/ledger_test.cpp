@@ -235,7 +235,7 @@ TEST_CASE("where bodies may stop what slides on the ground, the message says so"
   Account<2> run(with(TransferName::aflip), std::move(P), 1e6, ground, walls);
   REQUIRE(run.step(5).work.friction > 0.0);
   run.solver->particles().velocity[0][0] = 300.0;
-  CHECK_THROWS_WITH_AS(run.ledger.look(run.time, *run.solver, 0.02), doctest::Contains("let them end a cell off"),
+  CHECK_THROWS_WITH_AS(run.ledger.look(run.time, *run.solver, 0.02), doctest::Contains("let them end two cells off"),
                        ComputationError);
 }
 
