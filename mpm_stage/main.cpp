@@ -22,6 +22,7 @@
 #include "common/interrupt.hpp"
 #include "common/output_lock.hpp"
 #include "common/patient_threads.hpp"
+#include "mpm_stage/output/place_checks.hpp"
 #include "mpm_stage/run/program_of_solver.hpp"
 #include "mpm_stage/run/runout.hpp"
 #include "mpm_stage/scene/request_checks.hpp"
@@ -56,6 +57,7 @@ int main(int argc, char** argv) {
     const CaseFile file(case_path);
     const Scene scene = read_scene(file, particles, size);
     file.finish();
+    check_output_places(file.root(), scene);
     hold_output_folder(output);
     if (!control.resume) check_space(scene, output);
     const std::string title = "mpm_stage run " + case_path.string();

@@ -18,9 +18,13 @@ double losses(const WorkDone& w) {
 }
 
 // What may help, by where the energy came from. A shorter step brings down what the integration in time makes, and
-// nothing else.
-std::string advice(const LedgerRow& now) {
+// nothing else. Friction of ground that reaches into a body (nodes up to two cells under the ground grip, too) is
+// booked with the sliding that the body then stops.
+std::string advice(const LedgerRow& now, bool bodies) {
   if (!std::isfinite(now.total())) return "a shorter time step (time/courant) may help";
+  if (bodies && now.work.friction > 0.0)
+    return "where bodies reach to ground that soil slides on, friction is booked for a sliding that they stop: let "
+           "them end two cells off the ground; if they do, a shorter time step (time/courant) may help";
   if (std::isnan(now.work.transfer))
     return "if a shorter time step (time/courant) does not help, another scheme/transfer may, or a higher "
            "scheme/fmpm_order";
@@ -28,7 +32,8 @@ std::string advice(const LedgerRow& now) {
     return "it was made between particles and nodes, where a shorter time step does not help: scheme/transfer 'apic', "
            "or with 'aflip' a larger scheme/transfer_damping, may";
   return "it was made as motion and stress were integrated in time: a shorter time step (time/courant) may help, and "
-         "where soil is faster than its own waves or crushed to a fraction of its volume, a larger youngs_modulus";
+         "where soil is faster than its own waves or crushed to a fraction of its volume, a larger youngs_modulus "
+         "(bulk_modulus of a fluid)";
 }
 
 }  // namespace
@@ -72,12 +77,12 @@ LedgerRow Ledger<Dim>::measure(double time, Solver<Dim>& solver) const {
 
 template <int Dim>
 void Ledger<Dim>::check(const LedgerRow& now, double scale, const Solver<Dim>& solver, double limit) const {
-  const double start = rows_.empty() ? now.total() : rows_.front().total();
-  if (std::isfinite(now.total()) && !(now.lost - 0.5 * gain_ < -limit * scale - 1e-9 * std::fabs(start))) return;
+  const double start = rows_.empty() ? now.total() : rows_.front().total(), grown = 0.5 * gain_ - now.lost;
+  if (std::isfinite(now.total()) && !(grown > limit * scale + 1e-9 * std::fabs(start))) return;
   throw ComputationError(fmt::format(
       "{}, the most of all per mass: energy has grown without work that explains it, by {:.4g} J of {:.4g} J turned "
       "over (limit {} of it); {}",
-      solver.most_energetic(), -now.lost, scale, limit, advice(now)));
+      solver.most_energetic(), grown, scale, limit, advice(now, !solver.bodies().empty())));
 }
 
 template <int Dim>

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
+#include "mpm_stage/scene/key_checks.hpp"
 #include "mpm_stage/scene/scene.hpp"
 
 namespace tailrun::mpm {
@@ -38,7 +39,11 @@ std::vector<int> named_fields(const CaseNode& node, const Scene& scene, int& cou
         group.fail("materials", fmt::format("names '{}', which is no material of a particle.{} There are: {}", name,
                                             did_you_mean(name, names), joined(names)));
       int& f = field[static_cast<std::size_t>(it - names.begin())];
-      if (f >= 0) group.fail("materials", fmt::format("names '{}', which another group has already", name));
+      if (f == count) group.fail("materials", fmt::format("names '{}' twice", name));
+      if (f >= 0)
+        group.fail("materials", fmt::format("names '{}', which /contact/groups/{} has already; a material is in one "
+                                            "group",
+                                            name, f));
       f = count;
     }
     ++count;
@@ -58,6 +63,11 @@ void read_contact(const CaseNode& root, Scene& scene) {
   const CaseNode node = root.object_or_empty("contact");
   FieldChoice& fields = scene.solver.fields;
   const std::string kind = node.choice_or("fields", {"strength", "one", "named"}, "strength");
+  if (kind != "named") refuse_with_other_choice(node, "groups", "fields", kind, "'named'");
+  if (kind != "strength") refuse_with_other_choice(node, "sides", "fields", kind, "'strength'");
+  if (kind == "one")
+    for (const char* key : {"friction", "opening"})
+      refuse_with_other_choice(node, key, "fields", kind, "'strength' or 'named'");
   if (kind == "strength") {
     fields.of_material = fields_by_strength(scene);
     fields.by_side = node.boolean_or("sides", true) && !fields.of_material.empty();
@@ -75,7 +85,12 @@ void read_contact(const CaseNode& root, Scene& scene) {
   fields.flows.assign(static_cast<std::size_t>(fields.count), 0);
   for (std::size_t m = 0; m < fields.of_material.size(); ++m)
     if (scene.materials[m].law->flows) fields.flows[static_cast<std::size_t>(fields.of_material[m])] = 1;
-  if (const auto mu = node.number_if("friction", "1", Range::non_negative())) scene.solver.contact.friction = *mu;
+  if (const auto mu = node.number_if("friction", "1", Range::non_negative())) {
+    scene.solver.contact.friction = *mu;
+    check_friction(node, "friction", *mu, "the surfaces between fields");
+    if (!fields.several())
+      node.warn("friction", "does nothing: all particles are in one velocity field, and nothing slides in it");
+  }
   scene.solver.contact.opening =
       node.choice_or("opening", {"free", "held"}, "free") == "free" ? Opening::free : Opening::held;
 }

@@ -1,6 +1,7 @@
 // "particles" of mpm.json: boxes and polygons filled with particles, for scenes that need no other program.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -69,6 +70,20 @@ void check_overlap(const CaseNode& node, const ParticleSet& set, const std::vect
                     "first at {}, and would double the density there; let the shapes meet at their edges",
                     k, count, now.end - now.begin + before[k].end - before[k].begin, place_text(x, set.dimension)));
   }
+}
+
+// A surface under the whole shape gives it no stress.
+void check_stress(const CaseNode& node, const ParticleSet& set, const Filled& now) {
+  const auto components = static_cast<std::ptrdiff_t>(set.components());
+  const auto first = set.effective_stress.begin();
+  if (now.shape.geostatic &&
+      std::all_of(first + components * static_cast<std::ptrdiff_t>(now.begin),
+                  first + components * static_cast<std::ptrdiff_t>(now.end), [](double s) { return s == 0.0; }))
+    node.warn("stress",
+              fmt::format("gives no stress: its surface, y = {:g} m{}, lies under the whole shape, or gravity is "
+                          "0",
+                          now.shape.surface[1],
+                          now.shape.slope != 0.0 ? fmt::format(" at x = {:g} m", now.shape.surface[0]) : ""));
 }
 
 // Refuses an outline that has no one inside: mass would be that of the signed area, none for a figure of eight.
@@ -272,6 +287,7 @@ void generate_particles(const CaseNode& root, const std::vector<Material>& mater
                             "{:.4g} m; more points_per_cell_side or smaller cells may fill it",
                             scene.cell_size / static_cast<double>(node.integer_or("points_per_cell_side", 1, 10, 2))));
     check_overlap(node, set, shapes, now);
+    check_stress(node, set, now);
     shapes.push_back(std::move(now));
   }
   if (set.count() == 0) root.fail("particles", "no particle lies inside the shapes given");

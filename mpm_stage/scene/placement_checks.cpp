@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "common/log.hpp"
@@ -20,6 +21,31 @@ void warn(Scene& scene, const std::string& text) {
 
 std::string material_of(const Scene& scene, std::size_t p) {
   return scene.materials[static_cast<std::size_t>(scene.particles.material_id[p])].name;
+}
+
+// What lies outside of the domain would leave it in the first step: an error unless the scene says what becomes of it,
+// and one in any case where nothing is left.
+void check_inside_domain(const CaseNode& root, const Scene& scene) {
+  const Walls<3>& walls = scene.walls;
+  if (!walls.bounded) return;
+  const ParticleSet& set = scene.particles;
+  std::size_t outside = 0, first = 0;
+  for (std::size_t p = 0; p < set.count(); ++p) {
+    bool inside = true;
+    for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimension); ++d)
+      inside = inside && set.position[3 * p + d] >= walls.low[d] && set.position[3 * p + d] <= walls.high[d];
+    if (inside || outside++ > 0) continue;
+    first = p;
+  }
+  if (outside == 0) return;
+  const std::string found = fmt::format(
+      "{} of {} particles lie outside of the domain, which goes from {} to {}; the first is '{}' at {}", outside,
+      set.count(), place_text(walls.low.data(), set.dimension), place_text(walls.high.data(), set.dimension),
+      material_of(scene, first), place_text(&set.position[3 * first], set.dimension));
+  if (walls.leaving == LeavingParticles::error || outside == set.count()) root.fail("domain", found);
+  root.warn("domain", fmt::format("{}; leaving_particles {} in the first step", found,
+                                  walls.leaving == LeavingParticles::remove ? "'remove' takes them out"
+                                                                            : "'wall' moves them to its sides"));
 }
 
 // Material lies on the left of a line. Nothing holds what lies on its right, and a line drawn from the wrong end has
@@ -56,6 +82,29 @@ void check_sides(const CaseNode& root, Scene& scene) {
               "particles above it");
     warn(scene, found + "; the ground does not hold them");
   }
+}
+
+// Soil that nothing carries falls until it meets the ground: where that is farther below than the soil is high, one of
+// the two is on another datum.
+void check_hanging(const CaseNode& root, const Scene& scene) {
+  if (scene.terrain.empty() || scene.walls.any_wall() || !scene.walls.bodies.empty()) return;
+  const ParticleSet& set = scene.particles;
+  double least = std::numeric_limits<double>::infinity(), low = least, high = -least;
+  std::size_t nearest = 0;
+  for (std::size_t p = 0; p < set.count(); ++p) {
+    const double* x = &set.position[3 * p];
+    low = std::min(low, x[1]);
+    high = std::max(high, x[1]);
+    const double d = scene.terrain.distance(x[0], x[1]);
+    if (d >= least) continue;
+    least = d;
+    nearest = p;
+  }
+  if (least > std::max(4.0 * scene.cell_size, high - low))
+    root.warn("terrain",
+              fmt::format("all soil hangs in the air: the particle nearest to the ground is {:.4g} m off ('{}' "
+                          "at {}); are soil and ground heights y of one datum?",
+                          least, material_of(scene, nearest), place_text(&set.position[3 * nearest], set.dimension)));
 }
 
 // Rows of particles in the same place: the same particle twice.
@@ -123,7 +172,9 @@ std::string place_text(const double* x, int dimension) {
 }
 
 void check_placement(const CaseNode& root, Scene& scene) {
+  check_inside_domain(root, scene);
   check_sides(root, scene);
+  check_hanging(root, scene);
   check_duplicates(root, scene);
   check_room(scene);
 }

@@ -23,16 +23,18 @@ double likely_duration(const Scene& scene) {
   return scene.rest.active ? std::min(scene.end_time, quarter_hour) : scene.end_time;
 }
 
-// m/s, of the fastest material, as the solver has it at the start.
-double fastest_wave(const Scene& scene) {
-  std::vector<double> modulus;
+// s, that viscous stress allows, as the solver has it at the start; infinite without any.
+double viscous_step(const Scene& scene) {
+  std::vector<double> viscosity;
   for (const auto& material : scene.materials)
-    modulus.push_back(constants_of(material, scene.cell_size).wave_modulus());
-  double squared = 0.0;
+    viscosity.push_back(constants_of(material, scene.cell_size).explicit_viscosity);
+  double step = std::numeric_limits<double>::infinity();
+  const double area = scene.cell_size * scene.cell_size;
   for (std::size_t p = 0; p < scene.particles.count(); ++p)
-    squared = std::max(squared, modulus[static_cast<std::size_t>(scene.particles.material_id[p])] *
-                                    scene.particles.volume[p] / scene.particles.mass[p]);
-  return std::sqrt(squared);
+    if (const double eta = viscosity[static_cast<std::size_t>(scene.particles.material_id[p])]; eta > 0.0)
+      step = std::min(step, scene.solver.courant * area * scene.particles.mass[p] / scene.particles.volume[p] /
+                                (2.0 * scene.dimension * eta));
+  return step;
 }
 
 void check_grid(const CaseNode& root, const Scene& scene) {
@@ -66,6 +68,17 @@ void check_count(const CaseNode& root, const char* key, double interval, double 
 
 }  // namespace
 
+double fastest_wave(const Scene& scene) {
+  std::vector<double> modulus;
+  for (const auto& material : scene.materials)
+    modulus.push_back(constants_of(material, scene.cell_size).wave_modulus());
+  double squared = 0.0;
+  for (std::size_t p = 0; p < scene.particles.count(); ++p)
+    squared = std::max(squared, modulus[static_cast<std::size_t>(scene.particles.material_id[p])] *
+                                    scene.particles.volume[p] / scene.particles.mass[p]);
+  return std::sqrt(squared);
+}
+
 void check_particle_count(const CaseNode& node, const std::array<double, 3>& along, int dimension) {
   double count = 1.0;
   for (int d = 0; d < dimension; ++d) count *= std::max(1.0, along[d]);
@@ -80,6 +93,11 @@ void check_requests(const CaseNode& root, const Scene& scene) {
   check_grid(root, scene);
   const double duration = likely_duration(scene), wave = fastest_wave(scene);
   const double step = std::min(scene.solver.courant * scene.cell_size / wave, scene.solver.maximum_step);
+  if (const double viscous = viscous_step(scene); viscous < step && !(duration / viscous <= most_steps))
+    root.fail("materials",
+              fmt::format("{:.3g} steps of {:.3g} s are needed for {:g} s, but at most {:g} are allowed: the "
+                          "viscosity of a fluid asks for that on cells of {:g} m (water has 0.001 Pa s)",
+                          duration / viscous, viscous, duration, most_steps, scene.cell_size));
   if (!(duration / step <= most_steps))
     root.fail(
         "time",

@@ -13,6 +13,9 @@ namespace tailrun::mpm {
 // Throws InputError.
 void check_particle_count(const CaseNode& node, const std::array<double, 3>& along, int dimension);
 
+// m/s, of waves in the fastest material, as the solver has it at the start.
+double fastest_wave(const Scene& scene);
+
 // Grid, steps, frames and rows of a whole scene. A run that may stop at rest is judged by its first quarter of an hour.
 // Throws InputError.
 void check_requests(const CaseNode& root, const Scene& scene);

@@ -118,6 +118,8 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
 // Parts of read_scene, each in its own file. The first two read what chooses a solver.
 int read_dimension(const CaseNode& root);
 void read_scheme(const CaseNode& root, SolverOptions& options);
+void read_domain(const CaseNode& root, Scene& scene);
+void read_output(const CaseNode& root, Scene& scene);
 Material read_material(const std::string& name, const CaseNode& node, double residual_factor);
 // The case file's "particles" in scene.particles, with the gradients of the velocities that it gives them.
 void generate_particles(const CaseNode& root, const std::vector<Material>& materials, Scene& scene);
@@ -133,8 +135,9 @@ std::vector<MovingBody<3>> read_bodies(const CaseNode& root, int dimension);
 // and the scene its cohesion and strengths; the particles' residual_strength is then what they compute with.
 void assign_strength(const CaseFile& file, Scene& scene);
 
-// Whether the particles lie where they can be computed: on the material's side of each terrain line, and no more of
-// them in a place than it has room for. Throws InputError, or adds to the scene's remarks (placement_checks.cpp).
+// Whether the particles lie where they can be computed: in the domain, on the material's side of each terrain line, and
+// no more of them in a place than it has room for. Throws InputError, or adds to the scene's remarks
+// (placement_checks.cpp).
 void check_placement(const CaseNode& root, Scene& scene);
 // "(x, y) m" for messages.
 std::string place_text(const double* x, int dimension);

@@ -13,47 +13,12 @@
 #include "mpm_stage/grid/shape_functions.hpp"
 #include "mpm_stage/scene/request_checks.hpp"
 #include "mpm_stage/scene/scene.hpp"
+#include "mpm_stage/scene/scene_checks.hpp"
 #include "mpm_stage/step/lone_particle.hpp"
 
 namespace tailrun::mpm {
 
 namespace {
-
-void read_domain(const CaseNode& root, Scene& scene) {
-  const auto node = root.object_if("domain");
-  Walls<3>& walls = scene.walls;
-  if (!node) return;
-  const auto n = static_cast<std::size_t>(scene.dimension);
-  const auto low = node->numbers("low", "m", Range::any(), n), high = node->numbers("high", "m", Range::any(), n);
-  walls.bounded = true;
-  for (std::size_t d = 0; d < n; ++d) {
-    const double cells = (high[d] - low[d]) / scene.cell_size;
-    if (!(cells > 0.0) || std::fabs(cells - std::round(cells)) > 1e-6)
-      node->fail("high",
-                 fmt::format("the domain is {} cells of {} m long in direction {}; it must be a whole number of cells",
-                             cells, scene.cell_size, d));
-    walls.low[d] = scene.origin[d] = low[d];
-    walls.high[d] = high[d];
-  }
-  const CaseNode sides = node->object_or_empty("walls");
-  const std::array<std::array<const char*, 2>, 3> names = {{{"left", "right"}, {"bottom", "top"}, {"back", "front"}}};
-  for (int d = 0; d < scene.dimension; ++d)
-    for (int s = 0; s < 2; ++s) {
-      const auto side = sides.object_if(names[d][s]);
-      if (!side) continue;
-      const std::string kind = side->choice("kind", {"open", "fixed", "slip", "frictional"});
-      auto& wall = walls.side[d][s];
-      wall.kind = kind == "open"    ? WallKind::open
-                  : kind == "fixed" ? WallKind::fixed
-                  : kind == "slip"  ? WallKind::slip
-                                    : WallKind::frictional;
-      if (wall.kind == WallKind::frictional) wall.friction = side->number("friction", "1", Range::non_negative());
-    }
-  const std::string leaving = node->choice_or("leaving_particles", {"error", "remove", "wall"}, "error");
-  walls.leaving = leaving == "error"    ? LeavingParticles::error
-                  : leaving == "remove" ? LeavingParticles::remove
-                                        : LeavingParticles::wall;
-}
 
 void read_sleep(const CaseNode& root, Scene& scene) {
   const auto node = root.object_if("sleep");
@@ -66,17 +31,6 @@ void read_sleep(const CaseNode& root, Scene& scene) {
     root.fail("sleep", "does not go with scheme/transfer 'fmpm', whose filter needs every particle in every step");
   if (o.speed > 0.0 && scene.solver.transfer == TransferName::apic && scene.solver.local_damping == 0.0)
     root.fail("sleep", "needs scheme/transfer 'aflip' or 'flip': APIC puts momentum and forces on the nodes as one");
-}
-
-// Splines carry particles that are alone on their nodes between others; elsewhere they bear longer steps.
-void warn_of_long_steps(const Scene& scene) {
-  const SolverOptions& o = scene.solver;
-  const double longest = longest_courant<QuadraticShape>(2);
-  if (o.shape != ShapeName::quadratic || o.fields.count < 2 || o.courant <= longest) return;
-  add_warning(fmt::format(
-      "time/courant is {}: steps longer than {} let single particles between other soil swing ever more, until "
-      "they tear the run apart",
-      o.courant, longest));
 }
 
 // With linear functions and GIMP any particle at a body's side may be all but alone on a node.
@@ -108,50 +62,17 @@ void read_time(const CaseNode& root, Scene& scene) {
   scene.rest.energy_share = rest.number_or("energy_share", "1", {0.0, 0.1}, scene.rest.energy_share);
 }
 
-void read_output(const CaseNode& root, Scene& scene) {
-  const CaseNode node = root.object_or_empty("output");
-  OutputOptions& o = scene.output;
-  o.frame_interval = node.number_or("frame_interval", "s", Range::non_negative(), o.frame_interval);
-  o.frame_precision = node.choice_or("frame_precision", {"double", "single"}, "double") == "single" ? Precision::single
-                                                                                                    : Precision::full;
-  o.series_interval = node.number_or("series_interval", "s", Range::positive(), o.series_interval);
-  const std::string direction = node.choice_or("front_direction", {"+x", "-x", "+y", "-y", "+z", "-z"}, "+x");
-  o.front_sign = direction[0] == '+' ? 1.0 : -1.0;
-  o.front_axis = direction[1] - 'x';
-  if (o.front_axis >= scene.dimension) node.fail("front_direction", "z needs dimension 3");
-  o.flow_distance = node.number_or("flow_distance", "m", Range::positive(), o.flow_distance);
-  o.front_quantile = node.number_or("front_quantile", "1", Range::between(0.5, 1.0), o.front_quantile);
-  o.body_quantile = node.number_or("body_quantile", "1", Range::between(0.5, o.front_quantile),
-                                   std::min(o.body_quantile, o.front_quantile));
-  o.toe = node.number_if("toe", "m", Range::any());
-  if (node.has("footprint")) {
-    const auto ends = node.numbers("footprint", "m", Range::any(), 2);
-    if (!(ends[0] < ends[1])) node.fail("footprint", "the first number must be below the second");
-    o.footprint = {ends[0], ends[1]};
-  }
-  for (const CaseNode& point : node.list_or_empty("points")) {
-    const auto x = point.numbers("position", "m", Range::any(), 2);
-    o.points.push_back({point.text("name"), {x[0], x[1]}});
-  }
-  for (const CaseNode& section : node.list_or_empty("sections")) {
-    const std::string name = section.text("name");
-    const char* allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-    if (name.empty() || name.find_first_not_of(allowed) != std::string::npos)
-      section.fail("name", fmt::format("'{}' becomes part of a column's name: letters, digits, _ and - only", name));
-    for (const FlowSection& other : o.sections)
-      if (other.name == name) section.fail("name", fmt::format("there is a section '{}' already", name));
-    o.sections.push_back({name, section.number("at", "m", Range::any())});
-  }
-}
-
 void read_base_motion(const CaseNode& root, Scene& scene) {
   const auto node = root.object_if("base_motion");
   if (!node) return;
   const auto path = node->file("file");
   Motion motion = read_motion(path);
+  const double recorded = motion.peak_acceleration();
   if (const auto peak = node->number_if("peak_acceleration", "m/s2", Range::positive()))
     motion = scaled_to_peak(std::move(motion), *peak);
   scene.base.start = node->number_or("start", "s", Range::non_negative(), scene.particles.transfer_time);
+  // Values of the record are not left out: steps of waves in soil are far shorter than its own.
+  warn_about_motion(motion, recorded, 0.0, scene.base.start + scene.end_time);
   warn_about_late_start(motion, scene.base.start);
   const auto direction = node->numbers_or("direction", "1", Range::any(), {1.0, 0.0}, 2);
   const double length = std::hypot(direction[0], direction[1]);
@@ -261,6 +182,9 @@ double read_cell_size(const CaseNode& root, const std::string& size) {
     const double value = node.number("cell_size", "m", Range::between(1e-6, 1e5));
     if (name == size) cell_size = value;
   }
+  if (!size.empty() && size != "default" && root.object_or_empty("sizes").keys().empty())
+    root.warn("sizes",
+              fmt::format("--size {} changes nothing: this case has no sizes, and cells of {:g} m", size, cell_size));
   return cell_size;
 }
 
@@ -273,23 +197,10 @@ double default_surface_share(const Scene& scene) {
   return 0.05;
 }
 
-}  // namespace
-
-// What soil and state cannot be (common/plausible_*). Particles that were handed over come with the warnings of that.
-void judge(const CaseNode& root, const Scene& scene) {
-  const ParticleSet& set = scene.particles;
-  MaterialSetting setting;
-  setting.gravity = std::hypot(scene.gravity[0], scene.gravity[1], scene.gravity[2]);
-  double low = set.position[1], high = low, wettest = 0.0;
-  for (std::size_t p = 0; p < set.count(); ++p) {
-    low = std::min(low, set.position[3 * p + 1]);
-    high = std::max(high, set.position[3 * p + 1]);
-    wettest = std::max(wettest, set.pore_pressure[p]);
-  }
-  setting.height = std::max(high - low, scene.cell_size);
-  setting.has_water = wettest > 0.0;
-  for (const auto& [name, node] : root.object("materials").members()) check_material(node, setting);
+// What a state cannot be (common/plausible_state.hpp). Particles that were handed over come with the warnings of that.
+void check_handed_over(const Scene& scene) {
   if (scene.inputs.empty()) return;
+  const ParticleSet& set = scene.particles;
   const bool straight_down = scene.gravity[0] == 0.0 && scene.gravity[2] == 0.0;
   check_state(columns_of(set, scene.inputs.front().string(), straight_down ? -scene.gravity[1] : 0.0));
   if (const auto note = set.notes.find("warnings"); note != set.notes.end())
@@ -297,6 +208,35 @@ void judge(const CaseNode& root, const Scene& scene) {
       for (const auto& text : list)
         if (text.is_string()) add_warning("from the hand-over: " + text.get<std::string>());
 }
+
+// Particles made here or those of a file.
+void read_or_make_particles(const CaseFile& file, const std::vector<Material>& materials,
+                            const std::filesystem::path& given, Scene& scene) {
+  const CaseNode root = file.root();
+  if (root.has("particles")) {
+    if (root.has("particles_file"))
+      root.fail("particles_file",
+                "is given beside 'particles', which fills shapes with particles: one of the two has to go");
+    if (given.empty()) {
+      generate_particles(root, materials, scene);
+      scene.materials = materials;
+      return;
+    }
+    root.warn("particles", fmt::format("these shapes are left out: --particles {} takes their place", given.string()));
+  }
+  if (given.empty() && !root.has("particles_file"))
+    root.fail("", "has no particles: 'particles' (shapes to fill), 'particles_file' or --particles is required");
+  const auto path = given.empty() ? root.file("particles_file") : given;
+  if (!given.empty()) root.text_or("particles_file", "");
+  scene.particles = read_particles(path);
+  scene.inputs.push_back(path);
+  if (scene.particles.dimension != scene.dimension)
+    root.fail("dimension", fmt::format("is {}, but {} holds particles of dimension {}", scene.dimension, path.string(),
+                                       scene.particles.dimension));
+  scene.materials = order_materials(file, materials, scene.particles, scene);
+}
+
+}  // namespace
 
 Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_override, const std::string& size) {
   const CaseNode root = file.root();
@@ -322,19 +262,7 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
   for (const auto& [name, node] : root.object("materials").members())
     materials.push_back(read_material(name, node, factor));
 
-  if (root.has("particles") && particles_override.empty()) {
-    generate_particles(root, materials, scene);
-    scene.materials = materials;
-  } else {
-    const auto path = particles_override.empty() ? root.file("particles_file") : particles_override;
-    if (!particles_override.empty()) root.text_or("particles_file", "");
-    scene.particles = read_particles(path);
-    scene.inputs.push_back(path);
-    if (scene.particles.dimension != scene.dimension)
-      root.fail("dimension", fmt::format("is {}, but {} holds particles of dimension {}", scene.dimension,
-                                         path.string(), scene.particles.dimension));
-    scene.materials = order_materials(file, materials, scene.particles, scene);
-  }
+  read_or_make_particles(file, materials, particles_override, scene);
   scene.terrain_lines = read_terrain(root, scene.particles);
   for (const auto& line : scene.terrain_lines) scene.terrain.add_line(line.points, line.friction, line.adhere);
   scene.solver.ponds = read_ponds(root, scene);
@@ -345,10 +273,15 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
   read_contact(root, scene);
   if (scene.solver.surface_share < 0.0) scene.solver.surface_share = default_surface_share(scene);
   assign_strength(file, scene);
-  judge(root, scene);
+  check_gravity(root, scene);
+  check_materials(root, scene);
+  check_start(root, scene);
+  check_ponds(root, scene);
+  check_handed_over(scene);
   read_base_motion(root, scene);
   read_output(root, scene);
-  warn_of_long_steps(scene);
+  check_thresholds(root, scene);
+  warn_of_long_steps(root, scene);
   check_requests(root, scene);
   return scene;
 }

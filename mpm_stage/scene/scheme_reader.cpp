@@ -1,4 +1,7 @@
 // "dimension", "scheme" and "damping" of mpm.json: what chooses the solver, with the numbers of its method.
+#include <fmt/core.h>
+
+#include "mpm_stage/scene/key_checks.hpp"
 #include "mpm_stage/scene/scene.hpp"
 
 namespace tailrun::mpm {
@@ -29,6 +32,13 @@ void read_scheme(const CaseNode& root, SolverOptions& o) {
     o.flip_share = scheme.number_or("flip_share", "1", Range::between(0.0, 1.0), 0.99);
   if (o.transfer == TransferName::fmpm)
     o.fmpm_order = static_cast<int>(scheme.integer_or("fmpm_order", 2, 6, o.fmpm_order));
+  const auto only_with = [&](const char* key, const char* name) {
+    if (transfer != name) refuse_with_other_choice(scheme, key, "transfer", transfer, fmt::format("'{}'", name));
+  };
+  only_with("transfer_damping", "aflip");
+  only_with("flow_transfer_damping", "aflip");
+  only_with("flip_share", "flip");
+  only_with("fmpm_order", "fmpm");
   o.volumetric_average = scheme.boolean_or("volumetric_average", true);
   if (o.volumetric_average)
     o.crowding_relief = scheme.number_or("crowding_relief", "1", Range::between(0.0, 10.0), o.crowding_relief);

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
-#include "common/warnings.hpp"
+#include "mpm_stage/scene/key_checks.hpp"
 #include "mpm_stage/scene/line_crossing.hpp"
 #include "mpm_stage/scene/scene.hpp"
 
@@ -13,28 +13,65 @@ namespace tailrun::mpm {
 
 namespace {
 
-// "friction": one number, a list with one per segment, or "friction_regions": [[x_from, x_to, mu], ...] over a
-// "friction" that holds elsewhere; a segment belongs to the region of its middle.
+// "friction_regions" of a line: rows [x_from, x_to, mu].
+struct FrictionRegion {
+  double from, to, friction;  // m, m, 1
+};
+
+std::vector<FrictionRegion> read_regions(const CaseNode& node) {
+  std::vector<FrictionRegion> regions;
+  if (!node.has("friction_regions")) return regions;
+  const auto rows = node.table("friction_regions", "m, m, 1", 3);
+  for (std::size_t r = 0; r < rows.size(); r += 3) {
+    const FrictionRegion region{rows[r], rows[r + 1], rows[r + 2]};
+    const std::string key = fmt::format("friction_regions/{}", r / 3);
+    if (!(region.from < region.to))
+      node.fail(key, fmt::format("goes from {:g} to {:g} m: the first number must be below the second", region.from,
+                                 region.to));
+    if (!(region.friction >= 0.0))
+      node.fail(key, fmt::format("found a friction of {:g}, but allowed is [0, inf)", region.friction));
+    for (std::size_t o = 0; o < regions.size(); ++o)
+      if (const double low = std::max(region.from, regions[o].from), high = std::min(region.to, regions[o].to);
+          low < high)
+        node.fail(key, fmt::format("holds x from {:g} to {:g} m, which region {} does, too, with a friction of {:g} "
+                                   "beside {:g}; set them apart",
+                                   low, high, o, regions[o].friction, region.friction));
+    regions.push_back(region);
+  }
+  return regions;
+}
+
+// "friction": one number, a list with one per segment, or "friction_regions" over a "friction" that holds elsewhere; a
+// segment belongs to the region of its middle.
 std::vector<double> segment_friction(const CaseNode& node, const TerrainInput& line) {
   const std::size_t segments = line.points.size() - 1;
+  const std::string name = fmt::format("'{}'", line.name);
   std::vector<double> friction;
   if (node.is_list("friction"))
     friction = node.numbers("friction", "1", Range::non_negative(), segments);
   else
     friction.assign(segments, node.number("friction", "1", Range::non_negative()));
-  const auto regions =
-      node.has("friction_regions") ? node.table("friction_regions", "m, m, 1", 3) : std::vector<double>{};
-  for (std::size_t r = 0; r < regions.size(); r += 3)
+  check_friction(node, "friction", *std::max_element(friction.begin(), friction.end()), name);
+  const auto regions = read_regions(node);
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    const std::string key = fmt::format("friction_regions/{}", r);
+    double first = 0.0, last = 0.0;
+    bool any = false;
     for (std::size_t s = 0; s < segments; ++s) {
       const double middle = 0.5 * (line.points[s][0] + line.points[s + 1][0]);
-      if (middle >= regions[r] && middle < regions[r + 1]) friction[s] = regions[r + 2];
+      first = s == 0 ? middle : std::min(first, middle);
+      last = s == 0 ? middle : std::max(last, middle);
+      if (!(middle >= regions[r].from && middle < regions[r].to)) continue;
+      friction[s] = regions[r].friction;
+      any = true;
     }
-  constexpr double degrees_from = 10.0;  // a ground that holds what lies on it has 1
-  const double largest = *std::max_element(friction.begin(), friction.end());
-  if (largest > degrees_from && largest < 90.0)
-    node.warn("friction", fmt::format("{:g} on '{}' is a coefficient, not an angle; were it meant in degrees, it would "
-                                      "be {:.3g}",
-                                      largest, line.name, std::tan(largest * M_PI / 180.0)));
+    if (!any)
+      node.warn(key,
+                fmt::format("x from {:g} to {:g} m holds the middle of no segment of {}, so its friction of {:g} is "
+                            "nowhere; the middles of its {} segments lie from {:g} to {:g} m",
+                            regions[r].from, regions[r].to, name, regions[r].friction, segments, first, last));
+    check_friction(node, key, regions[r].friction, name);
+  }
   return friction;
 }
 

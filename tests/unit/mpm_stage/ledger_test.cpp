@@ -209,6 +209,36 @@ TEST_CASE("when energy grows from nothing, the particle that has it is named, wi
                        ComputationError);
 }
 
+TEST_CASE("the amount in the message is the one that is beyond the limit") {
+  const Terrain none;
+  Account<2> run(with(TransferName::aflip), block<2>({24, 16, 1}), 1e6, none, box<2>());
+  run.step(1);
+  // Half of what a step gains counts, and next to nothing has been lost or made besides.
+  run.ledger.follow(0.0);
+  run.ledger.follow(2e6);
+  std::string message;
+  try {
+    run.ledger.look(run.time, *run.solver, 0.02);
+  } catch (const ComputationError& error) {
+    message = error.what();
+  }
+  CHECK_MESSAGE(message.find("by 1e+06 J of") != std::string::npos, message);
+}
+
+TEST_CASE("where bodies may stop what slides on the ground, the message says so") {
+  Terrain ground;
+  ground.add_line({{{-10.0, 0.0}}, {{20.0, 0.0}}}, {0.5}, false);
+  Walls<2> walls = box<2>();
+  walls.bodies.push_back({"plate", {-1.0, -1.0}, {0.0, 3.0}, {0.0}, {{0.0, 0.0}}});
+  Particles<2> P = block<2>({12, 8, 1});
+  for (double& v : P.velocity[1]) v -= 2.0;
+  Account<2> run(with(TransferName::aflip), std::move(P), 1e6, ground, walls);
+  REQUIRE(run.step(5).work.friction > 0.0);
+  run.solver->particles().velocity[0][0] = 300.0;
+  CHECK_THROWS_WITH_AS(run.ledger.look(run.time, *run.solver, 0.02), doctest::Contains("let them end two cells off"),
+                       ComputationError);
+}
+
 TEST_CASE("a look is called for by what a step reports, and every so many steps") {
   EnergyWatch watch;
   LedgerRow row;
