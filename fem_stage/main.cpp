@@ -260,7 +260,8 @@ int main(int argc, char** argv) {
     for (const auto& path : {element_test.output, element_test.summary})
       if (!path.empty()) check_output_file(path, {element_test.case_file});
     const auto full = [](const std::filesystem::path& path) { return absolute(path).lexically_normal(); };
-    if (!element_test.output.empty() && full(element_test.output) == full(element_test.summary))
+    if (!element_test.output.empty() && !element_test.summary.empty() &&
+        full(element_test.output) == full(element_test.summary))
       throw InputError(fmt::format("--summary {}: is the curve's file, too (-o); give another name",
                                    std::filesystem::path(element_test.summary).string()));
     run_element_test(element_test);
