@@ -13,7 +13,7 @@ import sys
 FLOORS = {
     "common": ["", "residual_strength"],
     "fem_stage": ["mesh", "element", "material", "boundary", "model", "solver", "output", "stage", "element_test"],
-    "transfer_tool": ["sample", "map", "assign", "audit", "options", "import", "inspect"],
+    "transfer_tool": ["sample", "map", "assign", "balance", "audit", "options", "import", "inspect"],
     "mpm_stage": ["particles", "grid", "material", "transfer", "boundary", "step", "scene", "output", "checkpoint", "run"],
 }
 
