@@ -93,6 +93,9 @@ void run(const RunOptions& options) {
   check_request(file, options.size, snapshot, kept, wanted.sampling, options.output_path);
   const SamplePoints points = sample(snapshot, kept, wanted.sampling);
   warn_about(snapshot, wanted, kept, points);
+  // Before stresses are weighed: water that is not there would be the reason for what they lack.
+  const std::vector<PondedReach> ponds = pond_reaches(snapshot);
+  check_standing_water(snapshot, kept, ponds);
   check_state(columns_of(snapshot, options.snapshot_path, kept, true));
 
   // 2. Map
@@ -105,8 +108,7 @@ void run(const RunOptions& options) {
   if (wanted.terrain.any()) particles.terrain = terrain_lines(snapshot, kept, wanted.terrain);
   if (wanted.terrain.walls)
     for (auto& line : wall_lines(snapshot, kept, wanted.terrain)) particles.terrain.push_back(std::move(line));
-  particles.ponds = pond_reaches(snapshot);
-  check_standing_water(snapshot, kept, particles.ponds);
+  particles.ponds = ponds;
 
   // 4. Audit
   const Audit result = audit(
@@ -131,6 +133,7 @@ void import(const std::string& case_path, const std::string& output_path) {
   const CaseFile file(case_path);
   const Snapshot snapshot = import_tables(file, provenance);
   for (const auto& input : provenance.inputs) require_no_input(output_path, input);
+  check_standing_water(snapshot, std::vector<bool>(snapshot.elements(), true), pond_reaches(snapshot), true);
   check_state(columns_of(snapshot, case_path, {}, true));
   const std::string title = "transfer_tool import " + case_path;
   echo_options(title, file.echo(), options_of(output_path));
@@ -150,6 +153,10 @@ struct StrengthOptions {
 void strength(const StrengthOptions& options) {
   if (!options.output_path.empty()) check_output_file(options.output_path, {options.case_path});
   constexpr std::size_t points = 161;  // even steps of 2.5 kPa up to 400 kPa
+  for (const double percentile : options.percentiles)
+    if (percentile < 1.0)
+      add_warning(fmt::format("--percentiles: {0:g} %, less than one in a hundred; a fraction of {0:g} is {1:g} %",
+                              percentile, 100.0 * percentile));
   const CaseFile file(options.case_path);
   const auto curves = strength_curves(file, options.percentiles);
   fmt::print("{}", strength_text(curves, 1e3 * options.highest));
