@@ -77,7 +77,7 @@ void warn_about(const Snapshot& snapshot, const TransferCase& wanted, const std:
     }
 }
 
-void run(const RunOptions& options) {
+void hand_over(const RunOptions& options) {
   check_output_file(options.output_path, {options.case_path, options.snapshot_path, options.geostatic_path});
   Provenance provenance{"transfer_tool", {}, {}};
   const CaseFile file(options.case_path);
@@ -125,6 +125,18 @@ void run(const RunOptions& options) {
   write_particles(options.output_path, particles, provenance);
   write_options(all, title, file.echo());
   log_info("wrote {}", options.output_path);
+}
+
+// What is wrong with a key only against the mesh is said with the key; here the file comes to it.
+void run(const RunOptions& options) {
+  try {
+    hand_over(options);
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    for (const char* root : {"/exclude", "/terrain", "/rules"})
+      if (text.starts_with(root)) throw InputError(options.case_path + ": " + text);
+    throw;
+  }
 }
 
 void import(const std::string& case_path, const std::string& output_path) {

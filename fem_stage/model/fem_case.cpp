@@ -162,6 +162,12 @@ ConsolidationOptions read_consolidation(const CaseNode& node) {
   out.rest_velocity = node.number_or("rest_velocity", "m/s", Range::positive(), out.rest_velocity);
   out.post_shaking = node.boolean_or("post_shaking", out.post_shaking);
   out.snapshots = node.numbers_or("snapshots", "s", Range::positive(), {});
+  for (const double time : out.snapshots)
+    if (time > out.duration)
+      node.warn("snapshots",
+                fmt::format("{:g} s: after the end of the consolidation (/consolidation/duration, {:g} s): "
+                            "not written",
+                            time, out.duration));
   const CaseNode solver = node.object_or_empty("solver");
   out.tolerance = solver.number_or("tolerance", "1", Range::open(0.0, 0.1), out.tolerance);
   out.max_iterations = static_cast<int>(solver.integer_or("max_iterations", 2, 1000, out.max_iterations));

@@ -193,7 +193,7 @@ Assignment assign(const Snapshot& snapshot, const SamplePoints& points, const Po
     for (const auto& [region, count] : unmatched)
       where.push_back(fmt::format("{} in '{}'", count, snapshot.region_names[static_cast<std::size_t>(region)]));
     throw InputError(fmt::format(
-        "points that no rule of /rules fits: {}. End the list with a rule for the rest of each region", joined(where)));
+        "/rules: points that no rule fits: {}. End the list with a rule for the rest of each region", joined(where)));
   }
 
   drop_unused_materials(result);

@@ -328,3 +328,17 @@ TEST_CASE("a line that the mesh lacks is refused at the key that names it") {
             .find("/boundaries/base/line: the mesh has no physical curve 'botom'. Did you mean "
                   "'bottom'?") != std::string::npos);
 }
+
+TEST_CASE("snapshots after the end of the consolidation are warned of") {
+  const auto warned = [](const char* times) {
+    forget_warnings();
+    read_fem_case(case_file(R"("duration": 2)",
+                            fmt::format(R"("consolidation": {{ "duration": 100, "snapshots": {} }},)", times)),
+                  "");
+    const auto count = warnings().size();
+    forget_warnings();
+    return count;
+  };
+  CHECK(warned("[50, 100]") == 0);
+  CHECK(warned("[50, 500]") == 1);
+}
