@@ -260,7 +260,7 @@ TEST_CASE("names in history.csv: none twice, none that breaks its header") {
 
 TEST_CASE("a physical curve whose name no snapshot can hold is refused") {
   Mesh mesh = blocks(0.5, 0.0);
-  CHECK(refusal([&] { check_mesh(mesh, "m.msh"); }) == "");
+  CHECK(refusal([&] { check_mesh(mesh, "m.msh"); }).find("slash") == std::string::npos);
   mesh.lines["up/down"] = mesh.lines["left"];
   CHECK(refusal([&] {
           check_mesh(mesh, "m.msh");
