@@ -12,6 +12,8 @@
 #include "common/case_settings.hpp"
 #include "common/error.hpp"
 #include "common/json_text.hpp"
+#include "common/number_text.hpp"
+#include "common/text_file.hpp"
 #include "common/warnings.hpp"
 
 namespace tailrun {
@@ -55,6 +57,21 @@ std::string kind(const Json& value) {
   return fmt::format("{} {}", value.type_name(), shown);
 }
 
+// What a text was meant to say in place of a number: "8 kPa" of a key in Pa.
+std::string number_hint(const std::string& text, std::string_view unit) {
+  std::size_t used = 0;
+  const auto value = leading_number(text, used);
+  if (!value) return "";
+  const std::string found = text.substr(std::min(text.find_first_not_of(' ', used), text.size()));
+  if (found.empty()) return fmt::format("; without quotes: {:g}", *value);
+  const std::string plain = fmt::format("; write the number alone, in {}", unit == "1" ? "no unit" : unit);
+  static const std::map<char, double> prefixes = {{'G', 1e9}, {'M', 1e6}, {'k', 1e3}, {'c', 1e-2}, {'m', 1e-3}};
+  if (found == unit) return fmt::format("{}: {:g}", plain, *value);
+  const auto prefix = prefixes.find(found.front());
+  if (prefix == prefixes.end() || found.substr(1) != unit) return plain;
+  return fmt::format("{}: {:g}", plain, prefix->second * *value);
+}
+
 }  // namespace
 
 CaseFile::CaseFile(const std::filesystem::path& path) : state_(std::make_shared<State>()) {
@@ -67,6 +84,7 @@ CaseFile::CaseFile(const std::filesystem::path& path) : state_(std::make_shared<
   std::ostringstream text;
   text << stream.rdbuf();
   state_->text = text.str();
+  require_text(path, state_->text, "a case file (JSON)");
   state_->json = parse_json(path, state_->text);
   if (!state_->json.is_object())
     throw InputError(
@@ -169,7 +187,8 @@ void CaseNode::record(const std::string& key, const std::string& value, std::str
 
 double CaseNode::checked(const std::string& key, const Json& value, std::string_view unit, Range range) const {
   if (!value.is_number())
-    fail(key, fmt::format("found {}, but a number [{}] in {} is required", kind(value), unit, range.text()));
+    fail(key, fmt::format("found {}, but a number [{}] in {} is required{}", kind(value), unit, range.text(),
+                          value.is_string() ? number_hint(value.get<std::string>(), unit) : ""));
   const double number = value.get<double>();
   if (!std::isfinite(number) || !range.contains(number))
     fail(key, fmt::format("found {:g}, but allowed is {} [{}]", number, range.text(), unit));

@@ -81,6 +81,13 @@ Json& member_of(Json& object, std::size_t depth, const std::string& place, const
                        "--set '{}/{}={}'",
                        place, key, *slip, joined(there), place, key, text_of_json(whole)));
   }
+  // An index into what the file lacks: no list is made for one element of it.
+  if (const std::string& next = setting.keys[depth + 1];
+      !next.empty() && next.find_first_not_of("0123456789") == std::string::npos)
+    refuse(setting, path,
+           fmt::format("the file has no {0}/{1}, and a setting changes elements of lists and makes none; give the list "
+                       "as a whole: --set '{0}/{1}=[...]'",
+                       place, key));
   return object[key] = Json::object();
 }
 
@@ -125,8 +132,9 @@ void apply_settings(Json& json, const std::vector<CaseSetting>& settings, const 
         value = &member_of(*value, depth, place, setting, path);
       else
         refuse(setting, path,
-               fmt::format("{} is a {}, which has nothing within it that '{}' could name", place, value->type_name(),
-                           key));
+               fmt::format("{} is a {} ({}), which has nothing within it that '{}' could name; give it as a whole: "
+                           "--set '{}=...'",
+                           place, value->type_name(), text_of_json(*value), key, place));
       place += "/" + key;
     }
     *value = setting.value;

@@ -27,7 +27,7 @@ struct InterruptedError : ComputationError {
   using ComputationError::ComputationError;
 };
 
-// The candidate with the smallest Damerau-Levenshtein distance to `word`; empty when none is near enough to be meant.
+// The candidate nearest to `word` (Damerau-Levenshtein, letter case aside); empty when none is near enough to be meant.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 // " Did you mean 'x'?" or an empty string.

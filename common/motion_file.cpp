@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <regex>
 
@@ -12,6 +11,7 @@
 #include "common/motion.hpp"
 #include "common/motion_units.hpp"
 #include "common/number_text.hpp"
+#include "common/text_file.hpp"
 #include "common/warnings.hpp"
 
 namespace tailrun {
@@ -39,18 +39,6 @@ void integrate(const Path& path, Motion& motion) {
           fmt::format("{}: its accelerations add up to a velocity beyond any number; are they and their "
                       "unit right?",
                       path.string()));
-}
-
-Lines lines_of(const Path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(fmt::format("{}: no such motion file, or it cannot be read", path.string()));
-  Lines lines;
-  for (std::string line; std::getline(stream, line);) {
-    line.erase(std::remove(line.begin(), line.end(), '\r'), line.end());
-    if (lines.empty() && line.rfind("\xEF\xBB\xBF", 0) == 0) line.erase(0, 3);
-    lines.push_back(line);
-  }
-  return lines;
 }
 
 // Of text, which is searched by regular expressions: the library's take a stack frame for each character.
@@ -226,7 +214,7 @@ Columns columns_of(const Path& path, const Lines& lines, const std::vector<std::
 }  // namespace
 
 Motion read_at2(const Path& path) {
-  const Lines lines = lines_of(path);
+  const Lines lines = read_lines(path, "a motion");
   std::optional<Counts> counts;
   std::vector<std::size_t> header;
   for (std::size_t i = 0; i < std::min<std::size_t>(lines.size(), 12) && !counts; ++i) {
@@ -273,7 +261,7 @@ Motion read_at2(const Path& path) {
 Motion read_motion_csv(const Path& path) {
   Motion motion;
   motion.name = path.filename().string();
-  const Lines lines = lines_of(path);
+  const Lines lines = read_lines(path, "a motion");
   std::vector<std::size_t> header;
   std::size_t i = 0;
   for (; i < std::min<std::size_t>(lines.size(), 50) && !begins_like_number(lines[i]); ++i)

@@ -16,6 +16,11 @@ constexpr double least_water_stiffness = 1e7;  // Pa
 constexpr double largest_radians = 1.6;        // a right angle
 constexpr double largest_coefficient = 5000.0;
 constexpr double largest_factor = 10.0;
+constexpr double least_ground_stress = 1e3;                      // Pa
+constexpr double overconsolidated = 5.0;                         // S_u over sigma'_v0
+constexpr double least_atmosphere = 5e4, most_atmosphere = 2e5;  // Pa
+constexpr double no_cone = 1e4, softest_cone = 1e5;              // Pa, q_c1
+constexpr double softest_normalised_cone = 10.0;                 // q_c1 over 0.1 MPa
 
 void check_density(const CaseNode& node, double density, const MaterialSetting& setting) {
   if (density < lightest) {
@@ -50,15 +55,20 @@ void check_material(const CaseNode& node, const MaterialSetting& setting) {
   const auto density = node.peek("density");
   if (density) check_density(node, *density, setting);
   const double weight = density.value_or(1800.0) * setting.gravity * setting.height;
-  if (const auto c = node.peek("cohesion"); c && *c > 0.0 && *c < least_strength && *c < least_share_strength * weight)
-    node.warn("cohesion",
-              fmt::format("{:g} Pa is a thousandth of what soils have; is it {:g} kPa = {:g} Pa?", *c, *c, 1e3 * *c));
+  for (const char* key : {"cohesion", "strength"})
+    if (const auto c = node.peek(key); c && *c > 0.0 && *c < least_strength && *c < least_share_strength * weight)
+      node.warn(key,
+                fmt::format("{:g} Pa is a thousandth of what soils have; is it {:g} kPa = {:g} Pa?", *c, *c, 1e3 * *c));
+  check_fraction(node, "strength_ratio", overconsolidated);
+  if (const auto p = node.peek("atmospheric_pressure"); p && (*p < least_atmosphere || *p > most_atmosphere))
+    node.warn("atmospheric_pressure",
+              fmt::format("{:g} Pa is no pressure of the atmosphere (101300 Pa); is it in another unit?", *p));
   for (const char* key : {"shear_modulus", "youngs_modulus"})
     if (const auto stiffness = node.peek(key); stiffness && *stiffness < least_share_stiffness * weight)
       node.warn(key, fmt::format("{:g} Pa is less than {:g} m of this soil weigh ({:.3g} Pa), under which it would go "
                                  "flat; is it {:g} kPa = {:g} Pa (or MPa)?",
                                  *stiffness, setting.height, weight, *stiffness, 1e3 * *stiffness));
-  for (const char* key : {"friction_angle", "phi_cv"})
+  for (const char* key : {"friction_angle", "phi_cv", "phi_b_max"})
     if (const auto angle = node.peek(key)) check_angle(node, key, *angle);
   if (const auto g0 = node.peek("G0"); g0 && *g0 > largest_coefficient)
     node.warn("G0", fmt::format("{:g}; it is a coefficient without unit (100 to 2000), G = G0 p_A sqrt(p/p_A)", *g0));
@@ -83,6 +93,52 @@ void check_residual_strength(const CaseNode& node, const std::string& key, doubl
               fmt::format("{:g} Pa is a thousandth of what liquefied soils have (1 to 50 kPa); is it {:g} kPa = {:g} "
                           "Pa?",
                           strength, strength, 1e3 * strength));
+}
+
+void check_fraction(const CaseNode& node, const std::string& key, double most) {
+  if (const auto ratio = node.peek(key); ratio && *ratio > most)
+    node.fail(key,
+              fmt::format("found {0:g}, but allowed is at most {1:g}: it is a fraction of sigma'_v0; {0:g} % are {2:g}",
+                          *ratio, most, 0.01 * *ratio));
+}
+
+void check_ground_stress(const CaseNode& node, const std::string& key) {
+  if (const auto stress = node.peek(key); stress && *stress > 0.0 && *stress < least_ground_stress)
+    node.warn(key,
+              fmt::format("{0:g} Pa is the stress under less than a tenth of a metre of soil; {0:g} kPa are {1:g} Pa",
+                          *stress, 1e3 * *stress));
+}
+
+void check_percentile(const CaseNode& node, const std::string& key) {
+  if (const auto percent = node.peek(key); percent && *percent > 0.0 && *percent < 1.0)
+    node.warn(key, fmt::format("{0:g} %, less than one in a hundred; a fraction of {0:g} is {1:g} %", *percent,
+                               100.0 * *percent));
+}
+
+void check_fines_content(const CaseNode& node, const std::string& key) {
+  if (const auto percent = node.peek(key); percent && *percent > 0.0 && *percent < 1.0)
+    node.warn(key,
+              fmt::format("{0:g} % are hardly any fines; a fraction of {0:g} is {1:g} %", *percent, 100.0 * *percent));
+}
+
+void check_cone_stress(const CaseNode& node, const std::string& key) {
+  const auto cone = node.peek(key);
+  if (!cone || *cone <= 0.0 || *cone >= softest_cone) return;
+  const std::string found = fmt::format("{:g} Pa, but q_c1 of soil that can flow is 0.2 to 10 MPa", *cone);
+  if (*cone >= no_cone) {
+    node.warn(key, found);
+    return;
+  }
+  node.fail(key, "found " + found +
+                     (*cone < 100.0 ? fmt::format("; {0:g} MPa are {1:g} Pa", *cone, 1e6 * *cone)
+                                    : fmt::format("; {0:g} kPa are {1:g} Pa", *cone, 1e3 * *cone)));
+}
+
+void check_normalised_cone(const CaseNode& node, const std::string& key, const char* symbol) {
+  if (const auto cone = node.peek(key); cone && *cone > 0.0 && *cone < softest_normalised_cone)
+    node.warn(key, fmt::format("{0} = {1:g} is less than case histories have (10 to 90); it has no unit, and is about "
+                               "{2:g} for a resistance of {1:g} MPa at a stress of 0.1 MPa",
+                               symbol, *cone, 10.0 * *cone));
 }
 
 }  // namespace tailrun

@@ -23,8 +23,12 @@ struct MaterialSetting {
 //   cohesion         above 0 and under both 100 Pa and a thousandth of the soil's weight: kPa
 //   shear_modulus, youngs_modulus
 //                    under half of the soil's weight, which it would not carry without flattening: kPa or MPa
-//   friction_angle, residual_friction_angle, phi_cv
+//   friction_angle, phi_cv, phi_b_max
 //                    above 0 and under 1.6: radians
+//   strength         (of PM4Silt, S_u) as cohesion
+//   strength_ratio   (S_u over sigma'_v0) above 5, which overconsolidated clay does not reach: a percentage (error)
+//   atmospheric_pressure
+//                    outside of 5e4 to 2e5: kPa or another unit (warning)
 //   G0               a coefficient of 100 to 2000 in PM4: above 5000 it is taken for a modulus
 void check_material(const CaseNode& material, const MaterialSetting& setting);
 
@@ -36,6 +40,27 @@ void check_factor(const CaseNode& node, const std::string& key, double factor);
 
 // A residual strength of liquefied soil, Pa: above 0 and under 100 it is kPa (soils have 1 to 50 kPa).
 void check_residual_strength(const CaseNode& node, const std::string& key, double strength);
+
+// A shear stress or strength over sigma'_v0 ("ratio", "minimum_ratio", "csr", "strength_ratio"): a fraction. Above
+// `most` it is a percentage (error). 1 is more than a friction angle of 45 degrees gives normally consolidated soil.
+void check_fraction(const CaseNode& node, const std::string& key, double most = 1.0);
+
+// A stress in the ground, Pa: above 0 and under 1e3 it is kPa, for that is the stress under less than a tenth of a
+// metre of soil (warning).
+void check_ground_stress(const CaseNode& node, const std::string& key);
+
+// "percentile" (%) above 0 and under 1: a fraction, 0.33 for 33 (warning).
+void check_percentile(const CaseNode& node, const std::string& key);
+
+// "fines_content" (%), likewise.
+void check_fines_content(const CaseNode& node, const std::string& key);
+
+// "cone_resistance" in Pa: soils that flow have q_c1 of 0.2 to 10 MPa. Above 0 and under 1e4 it is in MPa or kPa
+// (error), since the strength would be that of no resistance at all; under 1e5 a warning.
+void check_cone_stress(const CaseNode& node, const std::string& key);
+
+// "cone_resistance" without unit, normalised by p_A = 0.1 MPa: above 0 and under 10 it is rather one in MPa (warning).
+void check_normalised_cone(const CaseNode& node, const std::string& key, const char* symbol);
 
 // A friction angle in degrees that looks like radians.
 void check_angle(const CaseNode& node, const std::string& key, double degrees);

@@ -179,7 +179,7 @@ StateColumns columns_of(const Snapshot& snapshot, const std::string& file, const
   s.what = "elements";
   s.water_density = snapshot.fluid_density;
   if (snapshot.gravity <= 0.0) return s;
-  const bool wet = snapshot.phreatic_line.size() >= 4;
+  const bool wet = snapshot.phreatic_line.size() >= 2;
   for (std::size_t e = 0; e < snapshot.elements(); ++e) {
     if (!kept.empty() && !kept[e]) continue;
     double x = 0.0, y = 0.0;

@@ -64,7 +64,7 @@ Model model_of(const Arguments& arguments, const FemCase& options) {
     return build_model(options, mesh_path(arguments));
   } catch (const InputError& error) {
     const std::string text = error.what();
-    for (const char* root : {"/boundaries", "/regions", "/loads", "/output", "/above_phreatic_line"})
+    for (const char* root : {"/boundaries", "/regions", "/loads", "/output", "/above_phreatic_line", "/phreatic_line"})
       if (text.rfind(root, 0) == 0) throw InputError(arguments.case_file + ": " + text);
     throw;
   }
@@ -260,6 +260,7 @@ int main(int argc, char** argv) {
     for (const auto& path : {element_test.output, element_test.summary})
       if (!path.empty()) check_output_file(path, {element_test.case_file});
     const auto full = [](const std::filesystem::path& path) { return absolute(path).lexically_normal(); };
+    // absolute() of no path at all is an error of its own.
     if (!element_test.output.empty() && !element_test.summary.empty() &&
         full(element_test.output) == full(element_test.summary))
       throw InputError(fmt::format("--summary {}: is the curve's file, too (-o); give another name",

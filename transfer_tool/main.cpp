@@ -97,7 +97,7 @@ void put_in_balance(const CaseFile& file, double cell_size, double gravity, Part
                                             1);
 }
 
-void run(const RunOptions& options) {
+void hand_over(const RunOptions& options) {
   check_output_file(options.output_path, {options.case_path, options.snapshot_path, options.geostatic_path});
   Provenance provenance{"transfer_tool", {}, {}};
   const CaseFile file(options.case_path);
@@ -113,6 +113,9 @@ void run(const RunOptions& options) {
   check_request(file, options.size, snapshot, kept, wanted.sampling, options.output_path);
   const SamplePoints points = sample(snapshot, kept, wanted.sampling);
   warn_about(snapshot, wanted, kept, points);
+  // Before stresses are weighed: water that is not there would be the reason for what they lack.
+  const std::vector<PondedReach> ponds = pond_reaches(snapshot);
+  check_standing_water(snapshot, kept, ponds);
   check_state(columns_of(snapshot, options.snapshot_path, kept, true));
 
   // 2. Map
@@ -125,8 +128,7 @@ void run(const RunOptions& options) {
   if (wanted.terrain.any()) particles.terrain = terrain_lines(snapshot, kept, wanted.terrain);
   if (wanted.terrain.walls)
     for (auto& line : wall_lines(snapshot, kept, wanted.terrain)) particles.terrain.push_back(std::move(line));
-  particles.ponds = pond_reaches(snapshot);
-  check_standing_water(snapshot, kept, particles.ponds);
+  particles.ponds = ponds;
   if (wanted.state.equilibrate) put_in_balance(file, wanted.sampling.cell_size, snapshot.gravity, particles);
 
   // 4. Audit
@@ -146,12 +148,25 @@ void run(const RunOptions& options) {
   log_info("wrote {}", options.output_path);
 }
 
+// What is wrong with a key only against the mesh is said with the key; here the file comes to it.
+void run(const RunOptions& options) {
+  try {
+    hand_over(options);
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    for (const char* root : {"/exclude", "/terrain", "/rules"})
+      if (text.starts_with(root)) throw InputError(options.case_path + ": " + text);
+    throw;
+  }
+}
+
 void import(const std::string& case_path, const std::string& output_path) {
   check_output_file(output_path, {case_path});
   Provenance provenance{"transfer_tool", {}, {}};
   const CaseFile file(case_path);
   const Snapshot snapshot = import_tables(file, provenance);
   for (const auto& input : provenance.inputs) require_no_input(output_path, input);
+  check_standing_water(snapshot, std::vector<bool>(snapshot.elements(), true), pond_reaches(snapshot), true);
   check_state(columns_of(snapshot, case_path, {}, true));
   const std::string title = "transfer_tool import " + case_path;
   echo_options(title, file.echo(), options_of(output_path));
@@ -171,6 +186,10 @@ struct StrengthOptions {
 void strength(const StrengthOptions& options) {
   if (!options.output_path.empty()) check_output_file(options.output_path, {options.case_path});
   constexpr std::size_t points = 161;  // even steps of 2.5 kPa up to 400 kPa
+  for (const double percentile : options.percentiles)
+    if (percentile < 1.0)
+      add_warning(fmt::format("--percentiles: {0:g} %, less than one in a hundred; a fraction of {0:g} is {1:g} %",
+                              percentile, 100.0 * percentile));
   const CaseFile file(options.case_path);
   const auto curves = strength_curves(file, options.percentiles);
   fmt::print("{}", strength_text(curves, 1e3 * options.highest));

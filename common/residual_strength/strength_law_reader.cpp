@@ -74,6 +74,7 @@ class Inputs {
   }
   // Standard normal quantile of "percentile" (50: the median).
   double percentile() {
+    check_percentile(node_, "percentile");
     return standard_normal_quantile(number_or("percentile", "%", Range::open(0.0, 100.0), 50.0) / 100.0);
   }
   double blows(double highest) {
@@ -84,7 +85,13 @@ class Inputs {
   }
   // Whether the soil is known by its cone resistance rather than by its blow count.
   bool has_cone() const {
-    if (node_.has("cone_resistance")) return true;
+    if (node_.has("cone_resistance")) {
+      if (node_.has("blow_count"))
+        node_.warn("blow_count", fmt::format("is not used: '{}' takes one of the two measurements, and cone_resistance "
+                                             "goes first; leave out the one that is not meant",
+                                             law_.model));
+      return true;
+    }
     return !node_.has("blow_count") && kept_value("cone_resistance") != nullptr;
   }
   // What this model has no use for and another might have.
@@ -206,6 +213,7 @@ void read_idriss_boulanger(Inputs& in, StrengthLaw& law) {
   if (in.has_cone()) {
     const double q = in.number("cone_resistance", "1", Range::between(0.0, 200.0)) + fines_increment_cpt(fines);
     if (q > 90.0) law.warnings.push_back(fmt::format("q_c1Ncs-Sr = {:g} lies above the case histories' 90", q));
+    check_normalised_cone(in.node(), "cone_resistance", "q_c1N");
     ratio = idriss_boulanger_cpt_ratio(q, redistribution);
   } else {
     const double n = in.number("blow_count", "1", Range::between(0.0, 60.0)) + fines_increment_spt(fines);
@@ -220,6 +228,7 @@ void read_olson_stark(Inputs& in, StrengthLaw& law) {
   double ratio = 0.0;
   if (in.has_cone()) {
     const double q = in.number("cone_resistance", "Pa", Range::between(0.0, 50e6));
+    check_cone_stress(in.node(), "cone_resistance");
     if (q > 6.5e6) law.warnings.push_back(fmt::format("q_c1 = {:g} MPa lies above the correlation's 6.5", q / 1e6));
     ratio = olson_stark_cpt_ratio(q, z);
   } else {
@@ -230,6 +239,7 @@ void read_olson_stark(Inputs& in, StrengthLaw& law) {
 
 void read_robertson(Inputs& in, StrengthLaw& law, bool is_2010) {
   const double q = in.number("cone_resistance", "1", Range::between(0.0, is_2010 ? 70.0 : 80.0));
+  check_normalised_cone(in.node(), "cone_resistance", "Q_tn,cs");
   const double ratio = is_2010 ? robertson_2010_ratio(q) : robertson_2022_ratio(q);
   law.evaluate_model = [ratio](double sigma) { return ratio * sigma; };
 }
@@ -257,6 +267,7 @@ void read_model(Inputs& in, StrengthLaw& law) {
     read_robertson(in, law, law.model == "robertson_2010");
   } else if (law.model == "ratio") {
     const double ratio = in.number("ratio", "1", Range::positive());
+    check_fraction(in.node(), "ratio");
     law.domain.second = 1e300;
     law.evaluate_model = [ratio](double sigma) { return ratio * sigma; };
   } else {
@@ -272,6 +283,7 @@ void read_bounds(Inputs& in, StrengthLaw& law) {
   law.friction_angle = in.number_or("friction_angle", "deg", Range::open(0.0, 60.0), law.friction_angle);
   check_angle(in.node(), "friction_angle", law.friction_angle);
   law.minimum_ratio = in.number_or("minimum_ratio", "1", Range::non_negative(), law.minimum_ratio);
+  check_fraction(in.node(), "minimum_ratio");
   law.minimum_strength = in.number_or("minimum_strength", "Pa", Range::positive(), law.minimum_strength);
 }
 
@@ -327,6 +339,7 @@ StrengthLaw read_strength_law(const CaseNode& node) {
   check_factor(node, "factor", law.factor);
   read_bounds(in, law);
   in.keep_measurements();
+  check_fines_content(node, "fines_content");
   return law;
 }
 
@@ -348,6 +361,7 @@ StrengthLaw read_changed_strength_law(const CaseNode& node, const KeptStrengthLa
   law.factor = law.record["factor"] = kept_factor(kept, law);
   read_bounds(in, law);
   in.keep_measurements();
+  check_fines_content(node, "fines_content");
   return law;
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <sstream>
 #include <string>
@@ -12,6 +11,7 @@
 #include "common/error.hpp"
 #include "common/motion_units.hpp"
 #include "common/number_text.hpp"
+#include "common/text_file.hpp"
 
 namespace tailrun::fem {
 
@@ -34,14 +34,11 @@ TimeHistory TimeHistory::sine(double frequency, double start) {
 }
 
 TimeHistory TimeHistory::table(const std::filesystem::path& path) {
-  std::ifstream stream(path);
-  if (!stream) throw InputError(fmt::format("{}: no such file, or it cannot be read", path.string()));
   TimeHistory out(Kind::table, 0.0);
   int row = 0;
   double to_seconds = 1.0;
-  for (std::string line; std::getline(stream, line);) {
+  for (std::string& line : read_lines(path, "a table 'time [s], factor'")) {
     ++row;
-    if (row == 1 && line.rfind("\xEF\xBB\xBF", 0) == 0) line.erase(0, 3);
     const std::string found = line;
     for (char& c : line)
       if (c == ',' || c == ';' || c == '\t' || c == '\r') c = ' ';

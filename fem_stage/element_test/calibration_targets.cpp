@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/plausible_material.hpp"
 #include "fem_stage/element_test/element_test_case.hpp"
 
 namespace tailrun::fem {
@@ -50,10 +51,12 @@ Targets read_targets(const CaseNode& root) {
   if (const auto node = root.object_if("cyclic_strength")) {
     CyclicTarget t;
     t.csr = node->number("csr", "1", Range::positive());
+    check_fraction(*node, "csr");
     t.cycles = node->number_or("cycles", "1", Range::between(0.5, 1000.0), t.cycles);
     t.shear_strain = node->number_or("shear_strain", "1", Range::open(0.0, 0.5), t.shear_strain);
     t.vertical_effective_stress =
         node->number_or("vertical_effective_stress", "Pa", Range::positive(), t.vertical_effective_stress);
+    check_ground_stress(*node, "vertical_effective_stress");
     t.K0 = node->number_or("K0", "1", Range::positive(), t.K0);
     t.static_shear_ratio = node->number_or("static_shear_ratio", "1", Range::between(-1.0, 1.0), 0.0);
     targets.cyclic = t;
@@ -64,6 +67,8 @@ Targets read_targets(const CaseNode& root) {
     for (const CaseNode& row : node->list("targets")) {
       targets.residual.push_back({row.number("vertical_effective_stress", "Pa", Range::positive()),
                                   row.number("shear_stress", "Pa", Range::positive())});
+      check_ground_stress(row, "vertical_effective_stress");
+      check_residual_strength(row, "shear_stress", targets.residual.back().shear_stress);
     }
     if (targets.residual.empty()) node->fail("targets", "an empty list");
   }

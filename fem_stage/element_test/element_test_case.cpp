@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "common/case_file.hpp"
+#include "common/plausible_material.hpp"
 
 namespace tailrun::fem {
 
@@ -42,10 +43,12 @@ ElementTestCase read_element_test(const std::filesystem::path& case_file) {
   const CaseNode root = file.root();
   ElementTestCase test;
   test.material = read_material(root.object("material"), "element test");
+  check_material(root.object("material"), {});
 
   const CaseNode initial = root.object_or_empty("initial");
   test.vertical_effective_stress =
       initial.number_or("vertical_effective_stress", "Pa", Range::positive(), test.vertical_effective_stress);
+  check_ground_stress(initial, "vertical_effective_stress");
   test.K0 = initial.number_or("K0", "1", Range::positive(), test.K0);
   test.static_shear_ratio = initial.number_or("static_shear_ratio", "1", Range::between(-2.0, 2.0), 0.0);
 
@@ -75,6 +78,7 @@ ElementTestCase read_element_test(const std::filesystem::path& case_file) {
   }
   if (test.type == ElementTestType::cyclic_simple_shear) {
     test.csr = loading.number("csr", "1", Range::positive());
+    check_fraction(loading, "csr");
     test.stop_cycles = stop.number_or("cycles", "1", Range::positive(), test.stop_cycles);
   }
   const CaseNode output = root.object_or_empty("output");

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "common/error.hpp"
+#include "common/plain_names.hpp"
 
 namespace tailrun::fem {
 namespace {
@@ -87,6 +88,12 @@ std::size_t Mesh::nearest_element(double px, double py) const {
 void check_mesh(Mesh& mesh, const std::string& source) {
   if (mesh.elements() == 0)
     throw InputError(fmt::format("{}: the mesh has no quadrilaterals in any physical surface", source));
+  for (const auto& [name, edges] : mesh.lines)
+    if (const std::string fault = fault_as_dataset(name); !fault.empty())
+      throw InputError(
+          fmt::format("{}: the name {} of a physical curve {}, but it is a dataset's name in snapshots; give "
+                      "it another in the geometry",
+                      source, shown_name(name), fault));
   std::vector<char> used(mesh.nodes(), 0);
   std::set<std::array<std::int64_t, 4>> shapes;
   for (std::size_t e = 0; e < mesh.elements(); ++e) {

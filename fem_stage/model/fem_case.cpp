@@ -7,7 +7,10 @@
 
 #include "common/case_file.hpp"
 #include "common/error.hpp"
+#include "common/plain_names.hpp"
 #include "common/plausible_material.hpp"
+#include "common/plausible_surroundings.hpp"
+#include "fem_stage/model/idle_loads.hpp"
 
 namespace tailrun::fem {
 namespace {
@@ -159,6 +162,12 @@ ConsolidationOptions read_consolidation(const CaseNode& node) {
   out.rest_velocity = node.number_or("rest_velocity", "m/s", Range::positive(), out.rest_velocity);
   out.post_shaking = node.boolean_or("post_shaking", out.post_shaking);
   out.snapshots = node.numbers_or("snapshots", "s", Range::positive(), {});
+  for (const double time : out.snapshots)
+    if (time > out.duration)
+      node.warn("snapshots",
+                fmt::format("{:g} s: after the end of the consolidation (/consolidation/duration, {:g} s): "
+                            "not written",
+                            time, out.duration));
   const CaseNode solver = node.object_or_empty("solver");
   out.tolerance = solver.number_or("tolerance", "1", Range::open(0.0, 0.1), out.tolerance);
   out.max_iterations = static_cast<int>(solver.integer_or("max_iterations", 2, 1000, out.max_iterations));
@@ -170,6 +179,7 @@ std::vector<NamedPoint> read_points(const CaseNode& node, const std::string& key
   std::vector<NamedPoint> points;
   const CaseNode parent = node.object_or_empty(key);
   for (const auto& name : parent.keys()) {
+    require_column_name(parent, "", name, "the columns' names in history.csv");
     const auto xy = parent.numbers(name, "m", Range::any(), 2);
     points.push_back({name, xy[0], xy[1]});
   }
@@ -193,6 +203,12 @@ OutputOptions read_output(const CaseNode& node, double step) {
   warn_if_below_step(node, "history_interval", out.history_interval, step, "a row");
   out.points = read_points(node, "points");
   out.elements = read_points(node, "elements");
+  for (const auto& element : out.elements)
+    for (const auto& point : out.points)
+      if (element.name == point.name)
+        node.fail("elements", fmt::format("'{0}' is the name of a point (/output/points), too: history.csv would have "
+                                          "two columns '{0}_pore_pressure_Pa'; give it another",
+                                          element.name));
   if (const auto liquefaction = node.object_if("liquefaction")) {
     out.liquefaction_region = liquefaction->text("region");
     const auto window = liquefaction->numbers("window", "m", Range::any(), 2);
@@ -210,17 +226,13 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
   FemCase out;
   root.text_or("title", "");
   out.mesh = read_mesh(root.object("mesh"), size);
-  out.gravity = root.number_or("gravity", "m/s2", Range::non_negative(), out.gravity);
+  out.gravity = read_gravity(root, Range::non_negative(), out.gravity);
   const CaseNode fluid = root.object_or_empty("fluid");
   out.fluid_density = fluid.number_or("density", "kg/m3", Range::positive(), out.fluid_density);
+  check_fluid_density(fluid, "density", out.fluid_density, out.gravity);
   out.fluid_bulk_modulus = fluid.number_or("bulk_modulus", "Pa", Range::positive(), out.fluid_bulk_modulus);
   check_water_stiffness(fluid, "bulk_modulus", out.fluid_bulk_modulus, out.gravity);
-  if (root.has("phreatic_line")) {
-    out.phreatic_line = root.table("phreatic_line", "m", 2);
-    for (std::size_t i = 2; i + 1 < out.phreatic_line.size(); i += 2)
-      if (out.phreatic_line[i] <= out.phreatic_line[i - 2])
-        root.fail("phreatic_line", fmt::format("row {}: x must ascend from row to row", i / 2));
-  }
+  if (root.has("phreatic_line")) out.phreatic_line = read_phreatic_line(root);
   out.above_phreatic_line = read_above_phreatic_line(root.object_or_empty("above_phreatic_line"));
   if (out.above_phreatic_line.soft_fluid && out.phreatic_line.empty())
     root.fail("above_phreatic_line", "the model is dry: a soft fluid needs a phreatic_line to lie above");
@@ -275,11 +287,15 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
     const auto permeability = node.numbers("permeability", "m/s", Range::non_negative());
     if (permeability.empty() || permeability.size() > 2)
       node.fail("permeability", "one value [m/s], or two (along x, along y), are required");
+    check_permeability(node, "permeability", permeability, out.gravity);
     region.permeability = {permeability.front(), permeability.back()};
     region.thickness = node.number_or("thickness", "m", Range::positive(), 1.0);
     out.regions.emplace(name, region);
   }
   out.boundaries = read_boundaries(root.object("boundaries"));
+  const CaseNode boundaries = root.object("boundaries");
+  if (const auto base = boundaries.object_if("base")) check_dashpot_soil(*base, "rock_", out.gravity);
+  for (const auto& side : boundaries.list_or_empty("free_field_dashpots")) check_dashpot_soil(side, "", out.gravity);
   out.loads = read_loads(root);
   if (!out.boundaries.ponds.empty() && out.phreatic_line.empty())
     root.fail("boundaries/ponded_water", "the model is dry: give a phreatic_line, which meets the pond at its level");
@@ -287,6 +303,7 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
   out.shake = read_shake(root.object("shake"));
   out.consolidation = read_consolidation(root.object_or_empty("consolidation"));
   out.output = read_output(root.object_or_empty("output"), out.shake.time_step);
+  warn_of_idle_loads(root, out.loads, out.shake.duration, out.shake.time_step);
   file.finish();
   out.echo = file.echo();
   out.provenance.program = "fem_stage";

@@ -3,7 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "common/error.hpp"
 #include "common/warnings.hpp"
 #include "fem_stage/boundary/phreatic_line.hpp"
 #include "fem_stage/model/soft_fluid.hpp"
@@ -11,8 +13,16 @@
 namespace tailrun::fem {
 
 namespace {
-constexpr double puddle = 0.1;  // m, of water that does not count
+constexpr double puddle = 0.1;        // m, of water that does not count
+constexpr double largest_step = 1.0;  // m, between a pond's level and the phreatic line
+
+// "fem.json: " for warnings; errors get it from whoever knows the path.
+std::string case_of(const FemCase& options) {
+  const auto& texts = options.provenance.texts;
+  return texts.empty() ? "" : texts.front().first + ": ";
 }
+
+}  // namespace
 
 void warn_of_weightless_water(const Model& model) {
   const FemCase& options = *model.options;
@@ -42,11 +52,44 @@ void warn_of_weightless_water(const Model& model) {
     }
   }
   if (under == 0) return;
-  add_warning(fmt::format(
-      "/phreatic_line: lies above the ground at {} of its {} nodes, by up to {:.3g} m at ({:.4g}, {:.4g}): the pore "
-      "pressures have "
-      "that water, but its weight does not press on the ground; give it as /boundaries/ponded_water, or lower the line",
-      under, all, deepest, mesh.x(worst), mesh.y(worst)));
+  add_warning(case_of(options) + fmt::format("/phreatic_line: lies above the ground at {} of its {} nodes, by up to "
+                                             "{:.3g} m at ({:.4g}, {:.4g}): the pore "
+                                             "pressures have "
+                                             "that water, but its weight does not press on the ground; give it as "
+                                             "/boundaries/ponded_water, or lower the line",
+                                             under, all, deepest, mesh.x(worst), mesh.y(worst)));
+}
+
+void check_ponds_meet_line(const Model& model) {
+  const FemCase& options = *model.options;
+  if (options.gravity <= 0.0) return;
+  for (const auto& pond : options.boundaries.ponds) {
+    std::size_t wet = 0, off = 0, worst = 0;
+    double largest = puddle;
+    for (const auto& line : pond.lines)
+      for (const auto node : nodes_at(model.mesh, {line, {}, pond.where})) {
+        const auto n = static_cast<std::size_t>(node);
+        if (pond.level - model.mesh.y(n) <= puddle) continue;
+        ++wet;
+        const double step = std::abs(phreatic_elevation(options.phreatic_line, model.mesh.x(n)) - pond.level);
+        off += step > puddle;
+        if (step <= largest) continue;
+        largest = step;
+        worst = n;
+      }
+    if (off == 0) continue;
+    const double x = model.mesh.x(worst), elevation = phreatic_elevation(options.phreatic_line, x);
+    const std::string found = fmt::format(
+        "{}/level: the pond stands at {:g} m, but the phreatic line lies at {:.4g} m at x = {:.4g} m, {:.3g} m {} it "
+        "(off at {} of the {} nodes under its water); where water stands on the ground, line and level are one",
+        pond.where, pond.level, elevation, x, largest, elevation < pond.level ? "below" : "above", off, wet);
+    if (largest > largest_step)
+      throw InputError(
+          fmt::format("{}: at most {:g} m apart is allowed. Lay /phreatic_line at {:g} m over the pond's "
+                      "lines, up to its shore",
+                      found, largest_step, pond.level));
+    add_warning(case_of(options) + found);
+  }
 }
 
 }  // namespace tailrun::fem

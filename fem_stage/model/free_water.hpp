@@ -11,4 +11,9 @@ namespace tailrun::fem {
 // water does: neither a pond, nor held_pressure, nor a load.
 void warn_of_weightless_water(const Model& model);
 
+// The phreatic line meets a pond at its level: where the ground is under the pond's water, line and level are one. Off
+// by more than 1 m the soil under the pond would have other water than the pond (p = 0 is held above the line, rho g
+// depth on the pond's ground): throws InputError with level, line and place; warns from 0.1 m.
+void check_ponds_meet_line(const Model& model);
+
 }  // namespace tailrun::fem

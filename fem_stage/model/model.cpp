@@ -124,7 +124,7 @@ void gather_held_pressures(const FemCase& options, Model& model) {
 // Nodes of the base and the area that each stands for.
 void gather_base(Model& model) {
   const Mesh& mesh = model.mesh;
-  model.base_nodes = mesh.nodes_of_line(model.options->boundaries.base_line);
+  model.base_nodes = nodes_at(mesh, {model.options->boundaries.base_line, {}, "/boundaries/base/line"});
   // The free-field columns' thickness widens the dashpots below them.
   std::map<std::array<std::int64_t, 2>, double> edge_thickness;
   for (std::size_t e = 0; e < model.count(); ++e)
@@ -209,6 +209,7 @@ Model build_model(const FemCase& options, const std::filesystem::path& mesh_file
     model.weight = options.gravity > 0.0 ? std::max(model.weight, scale) : scale;
   gather_held_pressures(options, model);
   warn_of_weightless_water(model);
+  check_ponds_meet_line(model);
   if (options.boundaries.base != BaseKind::none) gather_base(model);
   check_support(model);
   return model;

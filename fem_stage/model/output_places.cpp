@@ -59,6 +59,33 @@ void check_place(const Mesh& mesh, const NamedPoint& place, const char* key) {
 void check_output_places(const Mesh& mesh, const FemCase& options) {
   for (const auto& point : options.output.points) check_place(mesh, point, "points");
   for (const auto& element : options.output.elements) check_place(mesh, element, "elements");
+  liquefaction_elements(mesh, options.output);
+}
+
+std::vector<std::size_t> liquefaction_elements(const Mesh& mesh, const OutputOptions& output) {
+  std::vector<std::size_t> elements;
+  if (output.liquefaction_region.empty()) return elements;
+  const auto it = std::find(mesh.region_names.begin(), mesh.region_names.end(), output.liquefaction_region);
+  if (it == mesh.region_names.end())
+    throw InputError(fmt::format(
+        "/output/liquefaction/region: the mesh has no region '{}'.{} It has: {}", output.liquefaction_region,
+        did_you_mean(output.liquefaction_region, mesh.region_names), joined(mesh.region_names)));
+  const auto id = static_cast<std::int32_t>(it - mesh.region_names.begin());
+  const auto& window = output.liquefaction_window;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t e = 0; e < mesh.elements(); ++e) {
+    if (mesh.region[e] != id) continue;
+    const double x = mesh.centre(e)[0];
+    low = std::min(low, x);
+    high = std::max(high, x);
+    if (x >= window[0] && x <= window[1]) elements.push_back(e);
+  }
+  if (elements.empty() || !(window[0] < window[1]))
+    throw InputError(
+        fmt::format("/output/liquefaction/window: found [{:g}, {:g}] m, but no element of region '{}' has "
+                    "its centre in it; they lie from x = {:.4g} to {:.4g} m",
+                    window[0], window[1], output.liquefaction_region, low, high));
+  return elements;
 }
 
 }  // namespace tailrun::fem

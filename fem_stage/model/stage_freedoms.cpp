@@ -18,8 +18,8 @@ std::vector<std::int64_t> nodes_of_regions(const Mesh& mesh, const std::vector<s
   for (const auto& name : regions) {
     const auto it = std::find(mesh.region_names.begin(), mesh.region_names.end(), name);
     if (it == mesh.region_names.end())
-      throw InputError(fmt::format("/boundaries/tied_column_regions: the mesh has no region '{}'.{}", name,
-                                   did_you_mean(name, mesh.region_names)));
+      throw InputError(fmt::format("/boundaries/tied_column_regions: the mesh has no region '{}'.{} It has: {}", name,
+                                   did_you_mean(name, mesh.region_names), joined(mesh.region_names)));
     const auto id = static_cast<std::int32_t>(it - mesh.region_names.begin());
     for (std::size_t e = 0; e < mesh.elements(); ++e)
       if (mesh.region[e] == id)
@@ -71,7 +71,7 @@ Freedoms common_freedoms(const Model& model, When stage) {
     if (model.pressure_fixed[n]) freedoms.fix(static_cast<std::int64_t>(n), freedom_p);
   const auto& boundaries = model.options->boundaries;
   for (const auto& line : boundaries.roller_lines)
-    for (const auto node : model.mesh.nodes_of_line(line)) freedoms.fix(node, freedom_ux);
+    for (const auto node : nodes_at(model.mesh, {line, {}, "/boundaries/roller_lines"})) freedoms.fix(node, freedom_ux);
   if (stage == When::geostatic || boundaries.rock_p_velocity == 0.0)
     for (const auto node : model.base_nodes) freedoms.fix(node, freedom_uy);
   fix_listed(model, stage, freedoms);
@@ -81,7 +81,7 @@ Freedoms common_freedoms(const Model& model, When stage) {
     tie_equal_heights(freedoms, model.mesh, column, tolerance, displacement, "/boundaries/tied_column_regions");
   std::set<std::int64_t> periodic;
   for (const auto& line : boundaries.periodic_lines) {
-    const auto nodes = model.mesh.nodes_of_line(line);
+    const auto nodes = nodes_at(model.mesh, {line, {}, "/boundaries/periodic_lines"});
     periodic.insert(nodes.begin(), nodes.end());
   }
   constexpr Freedom all[] = {freedom_ux, freedom_uy, freedom_p};
@@ -117,7 +117,8 @@ Freedoms consolidation_freedoms(const Model& model) {
   Freedoms freedoms = common_freedoms(model, When::geostatic);
   for (const auto node : model.base_nodes) freedoms.fix(node, freedom_ux);
   for (const auto& line : model.options->boundaries.geostatic_roller_lines)
-    for (const auto node : model.mesh.nodes_of_line(line)) freedoms.fix(node, freedom_ux);
+    for (const auto node : nodes_at(model.mesh, {line, {}, "/boundaries/geostatic_roller_lines"}))
+      freedoms.fix(node, freedom_ux);
   return freedoms;
 }
 

@@ -10,6 +10,7 @@
 
 #include "common/error.hpp"
 #include "common/output_place.hpp"
+#include "fem_stage/model/output_places.hpp"
 #include "fem_stage/output/state_file.hpp"
 
 namespace tailrun::fem {
@@ -104,21 +105,8 @@ QualitySeries::QualitySeries(const Model& model, const std::filesystem::path& fo
              "liquefied_depth_m", "mean_excess_pore_pressure_ratio", "liquefied_share", "steps", "iterations",
              "factorisations", "material_substeps", "wall_s"}) {
   const auto& output = model.options->output;
-  if (output.liquefaction_region.empty()) return;
-  const auto it = std::find(model.mesh.region_names.begin(), model.mesh.region_names.end(), output.liquefaction_region);
-  if (it == model.mesh.region_names.end())
-    throw InputError(fmt::format("/output/liquefaction/region: the mesh has no region '{}'.{}",
-                                 output.liquefaction_region,
-                                 did_you_mean(output.liquefaction_region, model.mesh.region_names)));
-  const auto id = static_cast<std::int32_t>(it - model.mesh.region_names.begin());
-  for (std::size_t e = 0; e < model.count(); ++e) {
-    const double x = model.mesh.centre(e)[0];
-    if (model.mesh.region[e] == id && x >= output.liquefaction_window[0] && x <= output.liquefaction_window[1])
-      window_.push_back(e);
-  }
-  window_width_ = output.liquefaction_window[1] - output.liquefaction_window[0];
-  if (window_.empty() || window_width_ <= 0.0)
-    throw InputError("/output/liquefaction/window: no element of the region lies in it");
+  window_ = liquefaction_elements(model.mesh, output);
+  if (!window_.empty()) window_width_ = output.liquefaction_window[1] - output.liquefaction_window[0];
 }
 
 void QualitySeries::record(const State& state, const SolverCounts& counts, double wall_seconds) {

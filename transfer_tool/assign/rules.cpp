@@ -9,6 +9,7 @@
 
 #include "common/error.hpp"
 #include "common/json_text.hpp"
+#include "common/plausible_material.hpp"
 #include "common/residual_strength/strength_tally.hpp"
 
 namespace tailrun::transfer {
@@ -65,6 +66,8 @@ Range read_range(const CaseNode& node, const std::string& key, const char* unit)
   if (key == "excess_pore_pressure_ratio" && std::isfinite(range.low) && range.low > 2.0)
     bounds.warn(above ? "above" : "at_least",
                 fmt::format("{:g}; r_u is a ratio, {:g} % are {:g}", range.low, range.low, 0.01 * range.low));
+  if (key == "initial_vertical_effective_stress")
+    for (const char* word : {"above", "at_least", "below", "at_most"}) check_ground_stress(bounds, word);
   return range;
 }
 
@@ -190,7 +193,7 @@ Assignment assign(const Snapshot& snapshot, const SamplePoints& points, const Po
     for (const auto& [region, count] : unmatched)
       where.push_back(fmt::format("{} in '{}'", count, snapshot.region_names[static_cast<std::size_t>(region)]));
     throw InputError(fmt::format(
-        "points that no rule of /rules fits: {}. End the list with a rule for the rest of each region", joined(where)));
+        "/rules: points that no rule fits: {}. End the list with a rule for the rest of each region", joined(where)));
   }
 
   drop_unused_materials(result);

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 
 #include "common/error.hpp"
+#include "common/number_text.hpp"
+#include "common/text_file.hpp"
 
 namespace tailrun::transfer {
 namespace {
@@ -110,15 +111,28 @@ std::string as_word(std::string unit) {
   return word;
 }
 
+// The first line names the columns: one with a number in it is a row of a table whose header was left out, one without
+// commas but with another separator would be one column of that long name.
+void require_header(const std::filesystem::path& path, const std::string& line,
+                    const std::vector<std::string>& headers) {
+  if (std::any_of(headers.begin(), headers.end(), [](const auto& cell) { return number_of(cell).has_value(); }))
+    throw InputError(
+        fmt::format("{}: line 1: found a number ('{}'), but a header line with the columns' names is required",
+                    path.string(), line));
+  for (const auto& [separator, name] : {std::pair{';', "semicolons"}, std::pair{'\t', "tabs"}})
+    if (headers.size() == 1 && headers.front().find(separator) != std::string::npos)
+      throw InputError(fmt::format("{}: line 1: found columns separated by {} ('{}'), but commas are required{}",
+                                   path.string(), name, line,
+                                   separator == ';' ? " (and decimal points, not decimal commas)" : ""));
+}
+
 }  // namespace
 
 CsvTable::CsvTable(const std::filesystem::path& path) : path_(path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(fmt::format("{}: no such file, or it cannot be read", path.string()));
-  std::string line;
-  if (!std::getline(stream, line)) throw InputError(fmt::format("{}: empty; a header line is required", path.string()));
-  if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
-  for (const auto& header : split(line)) {
+  const std::vector<std::string> lines = read_lines(path, "a table (CSV)");
+  const auto headers = split(lines.front());
+  require_header(path, lines.front(), headers);
+  for (const auto& header : headers) {
     Column column{header, header, ""};
     const std::size_t bracket = header.find_first_of("[(");
     if (bracket != std::string::npos && bracket > 0 && (header.back() == ']' || header.back() == ')')) {
@@ -139,8 +153,8 @@ CsvTable::CsvTable(const std::filesystem::path& path) : path_(path) {
                         path.string(), other.header, column.header));
     columns_.push_back(std::move(column));
   }
-  for (std::size_t number = 2; std::getline(stream, line); ++number) {
-    auto cells = split(line);
+  for (std::size_t number = 2; number <= lines.size(); ++number) {
+    auto cells = split(lines[number - 1]);
     if (cells.size() == 1 && cells[0].empty()) continue;
     if (cells.size() != columns_.size())
       throw InputError(fmt::format("{}: line {} has {} cells, but the header has {}", path.string(), number,

@@ -9,7 +9,10 @@
 
 #include "common/element_mean.hpp"
 #include "common/error.hpp"
+#include "common/plain_names.hpp"
 #include "common/plausible_material.hpp"
+#include "common/plausible_surroundings.hpp"
+#include "common/warnings.hpp"
 #include "transfer_tool/import/csv_table.hpp"
 #include "transfer_tool/sample/mesh_geometry.hpp"
 
@@ -79,6 +82,12 @@ void read_mesh(const CaseNode& root, const std::vector<std::string>& ignored, Sn
       const auto it = nodes.find(corners[a][row]);
       if (it == nodes.end())
         quad_table.fail(row, fmt::format("n{}", a + 1), fmt::format("node {} does not exist", corners[a][row]));
+      for (std::size_t b = 0; b < a; ++b)
+        if (corners[b][row] == corners[a][row])
+          quad_table.fail(row, fmt::format("n{}", a + 1),
+                          fmt::format("node {} is n{} already; a quadrilateral has four different nodes (triangles are "
+                                      "not taken)",
+                                      corners[a][row], b + 1));
       snapshot.quads.push_back(static_cast<std::int64_t>(it->second));
     }
     auto& names = snapshot.region_names;
@@ -100,8 +109,13 @@ void read_mesh(const CaseNode& root, const std::vector<std::string>& ignored, Sn
   const auto lines = node_table.texts("lines");
   for (std::size_t node = 0; node < lines.size(); ++node) {
     std::istringstream names(lines[node]);
-    for (std::string name; std::getline(names, name, '|');)
+    for (std::string name; std::getline(names, name, '|');) {
+      if (const std::string fault = fault_as_dataset(name); !fault.empty())
+        node_table.fail(
+            node, "lines",
+            fmt::format("the name {} of a line {}, but it is a dataset's name in snapshots", shown_name(name), fault));
       on_line.try_emplace(name, lines.size(), false).first->second[node] = true;
+    }
   }
   for (const auto& [name, is_on] : on_line) {
     MeshLine line{name, {}};
@@ -152,6 +166,23 @@ void derive_element_fields(Snapshot& snapshot, const std::vector<double>& initia
   }
 }
 
+// r_u needs the pore pressures before the shaking and sigma'_v0: with one table of the two the other would be taken
+// from the state itself, so that r_u would be zero everywhere, or over a stress that the shaking has changed already.
+void require_whole_initial_state(const CaseNode& root, double time) {
+  const char *nodes = "initial_node_state", *elements = "initial_element_state";
+  for (const auto& [given, missing] : {std::pair{nodes, elements}, std::pair{elements, nodes}})
+    if (root.has(given) && !root.has(missing))
+      root.fail(missing,
+                fmt::format("missing, while '{}' is given: the state before the shaking takes both tables, for "
+                            "r_u is of its pore pressures and its stresses",
+                            given));
+  if (time > 0.0 && !root.has(nodes))
+    root.warn(nodes,
+              fmt::format("missing, with '{}': the state of {:g} s counts as the one before the shaking, so that "
+                          "r_u is 0 everywhere and sigma'_v0 is what is left at that time",
+                          elements, time));
+}
+
 void set_base_velocity(const CaseNode& root, Snapshot& snapshot) {
   const bool given = root.has("base_line");
   const std::string name = root.text_or("base_line", "base");
@@ -194,9 +225,10 @@ Snapshot import_tables(const CaseFile& file, Provenance& provenance) {
   const CaseNode root = file.root();
   Snapshot snapshot;
   snapshot.time = root.number_or("time", "s", Range::non_negative(), 0.0);
-  snapshot.gravity = root.number_or("gravity", "m/s2", Range::positive(), 9.81);
+  snapshot.gravity = read_gravity(root, Range::positive(), 9.81);
   snapshot.fluid_density = root.number_or("fluid_density", "kg/m3", Range::positive(), 1000.0);
-  if (root.has("phreatic_line")) snapshot.phreatic_line = root.table("phreatic_line", "m", 2);
+  check_fluid_density(root, "fluid_density", snapshot.fluid_density, snapshot.gravity);
+  if (root.has("phreatic_line")) snapshot.phreatic_line = read_phreatic_line(root);
   const bool compression_positive = root.choice_or("normal_stress", {"compression_positive", "tension_positive"},
                                                    "compression_positive") == "compression_positive";
 
@@ -237,6 +269,7 @@ Snapshot import_tables(const CaseFile& file, Provenance& provenance) {
   node_state.finish(ignored);
   element_state.finish(ignored);
 
+  require_whole_initial_state(root, snapshot.time);
   std::vector<double> initial_pressure = snapshot.pore_pressure;
   snapshot.initial_effective_stress = snapshot.effective_stress;
   if (root.has("initial_node_state")) {

@@ -103,7 +103,7 @@ void read_provenance(const Hdf5Reader& file, FileReport& report) {
   for (std::size_t i = 0; i < std::min(names.size(), sums.size()); ++i) report.inputs.emplace_back(names[i], sums[i]);
 }
 
-// Datasets that no part of the format describes, such as the restart state that a program keeps in its own group.
+// Datasets that no part of the format describes, such as the restart state that a program keeps in a group of its own.
 void read_other(const Hdf5Reader& file, const std::string& group, FileReport& report) {
   for (const auto& name : file.members(group)) {
     const std::string place = group + "/" + name;
@@ -168,6 +168,10 @@ FileReport read_file_report(const std::filesystem::path& path) {
     for (const auto& name : file.members("/tailrun/notes"))
       for (const auto& text : file.texts("/tailrun/notes/" + name)) report.notes.emplace_back(name, text);
   read_other(file, "/tailrun", report);
+  // A checkpoint has no grid: all that it holds lies in groups of its program's own.
+  for (const auto& name : file.members("/"))
+    if (const std::string group = "/" + name; name != "tailrun" && name != "VTKHDF" && file.is_group(group))
+      read_other(file, group, report);
   read_fields(file, points_of, report.fields);
   read_fields(file, cells_of, report.fields);
   return report;
@@ -179,7 +183,10 @@ std::string report_text(const FileReport& report) {
   if (!report.program.empty()) text += fmt::format("  made by {} {}\n", report.program, report.program_version);
   for (const auto& [name, sum] : report.inputs) text += fmt::format("  from {}  sha256 {}\n", name, sum);
   for (const auto& [name, value] : report.numbers) text += fmt::format("  {} = {:g}\n", name, value);
-  text += fmt::format("  {} points, {} cells\n", report.points, report.cells);
+  if (report.kind.find("checkpoint") != std::string::npos)
+    text += "  a checkpoint: what a run that was stopped goes on from (--resume), without a grid to look at\n";
+  else
+    text += fmt::format("  {} points, {} cells\n", report.points, report.cells);
   if (!report.low.empty())
     text += fmt::format("  bounds ({}) to ({}) m\n", columns_of(report.low), columns_of(report.high));
   if (report.mass) text += fmt::format("  mass {:.8g} kg\n", *report.mass);
@@ -191,6 +198,7 @@ std::string report_text(const FileReport& report) {
     text += fmt::format("  note {:<29} {:>9} characters\n", name, note.size());
   for (const auto& [name, shape] : report.other)
     text += fmt::format("  data {:<29} {:>9}\n", name, fmt::format("{}", fmt::join(shape, " x ")));
+  if (report.fields.empty()) return text;
   text += fmt::format("\n  {:<38} {:>6} {:>13} {:>13} {:>13}\n", "field", "unit", "min", "mean", "max");
   for (const auto& field : report.fields) {
     const std::string name = field.name.substr(field.name.rfind('/') + 1);

@@ -35,7 +35,7 @@ struct FileReport {
   std::vector<Group> groups;
   std::vector<std::pair<std::string, std::size_t>> polylines;  // terrain and named lines, with their number of rows
   std::vector<std::pair<std::string, std::string>> notes;      // name, text
-  std::vector<std::pair<std::string, std::vector<std::size_t>>> other;  // further datasets of /tailrun: restart states
+  std::vector<std::pair<std::string, std::vector<std::size_t>>> other;  // further datasets: restart states, checkpoints
   std::vector<FieldReport> fields;
 };
 

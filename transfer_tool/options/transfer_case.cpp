@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "common/plain_names.hpp"
+
 namespace tailrun::transfer {
 namespace {
 
@@ -59,6 +61,10 @@ void read_regions(const CaseNode& root, const std::vector<std::string>& region_n
     kept[region] = false;
   }
   result.terrain.name = node->text_or("name", "bed");
+  require_dataset_name(*node, "name", result.terrain.name, "the particles file, as a dataset's name");
+  // Those of the walls (sample/terrain.cpp): one of two lines of one name would be lost.
+  if (result.terrain.name == "upstream_wall" || result.terrain.name == "downstream_wall")
+    node->fail("name", fmt::format("found '{}', which is a wall's name; give the bed another", result.terrain.name));
   if (const auto to = node->number_if("downstream_to", "m", Range::any())) {
     if (!result.terrain.any()) node->fail("downstream_to", "there is no bed to extend: 'regions' names none");
     result.terrain.extend = true;

@@ -109,9 +109,9 @@ std::vector<PondedReach> pond_reaches(const Snapshot& snapshot) {
 }
 
 void check_standing_water(const Snapshot& snapshot, const std::vector<bool>& kept,
-                          const std::vector<PondedReach>& ponds) {
+                          const std::vector<PondedReach>& ponds, bool only_warn) {
   const auto& line = snapshot.phreatic_line;
-  if (line.size() < 4) return;
+  if (line.size() < 2) return;
   double deepest = 0.0, where = 0.0;
   for (const auto& side : element_sides(snapshot)) {
     if (side.neighbour >= 0 || !kept[static_cast<std::size_t>(side.element)]) continue;
@@ -133,7 +133,7 @@ void check_standing_water(const Snapshot& snapshot, const std::vector<bool>& kep
       "the phreatic line lies up to {:.3g} m above the ground (at x = {:.4g} m), where no pond of that level is: the "
       "particles would keep the pore pressures of that water without its weight outside",
       deepest, where);
-  if (deepest > refused)
+  if (deepest > refused && !only_warn)
     throw InputError(found + "; give it as 'ponded_water' (boundaries of fem.json, or import.json), or lower the line");
   add_warning(found);
 }

@@ -15,8 +15,9 @@ namespace tailrun::transfer {
 std::vector<PondedReach> pond_reaches(const Snapshot& snapshot);
 
 // A phreatic line above the free surface of kept elements is water that stands there. Without a pond of that level its
-// weight is missing: throws InputError where that is more than 1 m, warns from 0.1 m.
+// weight is missing: throws InputError where that is more than 1 m, warns from 0.1 m. `only_warn`: where it is not
+// known yet which elements will be kept.
 void check_standing_water(const Snapshot& snapshot, const std::vector<bool>& kept,
-                          const std::vector<PondedReach>& ponds);
+                          const std::vector<PondedReach>& ponds, bool only_warn = false);
 
 }  // namespace tailrun::transfer

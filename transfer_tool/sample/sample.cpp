@@ -121,7 +121,10 @@ SamplePoints sample(const Snapshot& snapshot, const std::vector<bool>& kept, con
       }
   }
   if (points.count() == 0)
-    throw InputError("no element is left to become particles: every region is excluded or outside the clip");
+    throw InputError(
+        "/exclude: no element is left to become particles: every region is excluded, part of the bed "
+        "(/terrain/regions) "
+        "or outside of /clip");
   return points;
 }
 

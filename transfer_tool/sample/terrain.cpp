@@ -32,7 +32,7 @@ NextNode bed_sides(const Snapshot& snapshot, const std::vector<bool>& kept, cons
     const bool under_kept = side.neighbour >= 0 && kept[static_cast<std::size_t>(side.neighbour)];
     if (!under_kept && dx < least_upward * std::hypot(dx, dy)) continue;
     if (!next.emplace(side.to, side.from).second)
-      throw InputError(fmt::format("terrain: the bed's surface branches at node {} ({:g}, {:g})", side.to,
+      throw InputError(fmt::format("/terrain/regions: the bed's surface branches at node {} ({:g}, {:g})", side.to,
                                    snapshot.position[2 * from], snapshot.position[2 * from + 1]));
   }
   return next;
@@ -106,7 +106,7 @@ std::vector<TerrainLine> terrain_lines(const Snapshot& snapshot, const std::vect
                                        const TerrainOptions& options) {
   const NextNode sides = bed_sides(snapshot, kept, options.region);
   if (sides.empty())
-    throw InputError("terrain: the named regions have no surface towards kept elements or the open air");
+    throw InputError("/terrain/regions: the named regions have no surface towards kept elements or the open air");
   std::vector<TerrainLine> lines;
   for (auto& points : chained(snapshot, sides))
     lines.push_back(
@@ -116,7 +116,7 @@ std::vector<TerrainLine> terrain_lines(const Snapshot& snapshot, const std::vect
     auto& points = lines.back().points;
     const double x = points[points.size() - 2], y = points.back();
     if (options.downstream_to <= x)
-      throw InputError(fmt::format("terrain: downstream_to is {:g} m, but the mesh's ground already reaches {:g} m",
+      throw InputError(fmt::format("/terrain/downstream_to: found {:g} m, but the mesh's ground already reaches {:g} m",
                                    options.downstream_to, x));
     const double fall = std::tan(options.downstream_slope * std::numbers::pi / 180.0) * (options.downstream_to - x);
     points.insert(points.end(), {options.downstream_to, y - fall});

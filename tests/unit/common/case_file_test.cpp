@@ -130,3 +130,27 @@ TEST_CASE("what is not JSON is said in words, with line and column") {
     CHECK_FALSE(contains(refusal(text), "json.exception"));
   CHECK(contains(message([] { CaseFile{std::filesystem::temp_directory_path()}; }), "is a folder"));
 }
+
+TEST_CASE("a text in place of a number: what it says in the key's own unit") {
+  const auto refusal = [](const std::string& value, const char* unit) {
+    const CaseFile file = written("{\"cohesion\": \"" + value + "\"}");
+    return message([&] { file.root().number("cohesion", unit, Range::positive()); });
+  };
+  CHECK(contains(refusal("8kPa", "Pa"), "found string \"8kPa\", but a number [Pa]"));
+  CHECK(contains(refusal("8kPa", "Pa"), "write the number alone, in Pa: 8000"));
+  CHECK(contains(refusal("8 MPa", "Pa"), "in Pa: 8e+06"));
+  CHECK(contains(refusal("12 m", "m"), "in m: 12"));
+  CHECK(contains(refusal("8 psf", "Pa"), "write the number alone, in Pa"));
+  CHECK_FALSE(contains(refusal("8 psf", "Pa"), "in Pa: "));
+  CHECK(contains(refusal("8000", "Pa"), "without quotes: 8000"));
+  CHECK_FALSE(contains(refusal("soft", "Pa"), "write the number"));
+}
+
+TEST_CASE("a word in other letters is the nearest one") {
+  const CaseFile file = written(R"({"transfer": "FLIP"})");
+  CHECK(contains(message([&] { file.root().choice("transfer", {"aflip", "apic", "flip"}); }), "Did you mean 'flip'?"));
+}
+
+TEST_CASE("an HDF5 file in the place of a case file is called one") {
+  CHECK(contains(message([] { written("\x89HDF\r\n\x1a\n"); }), "found an HDF5 file, but a case file (JSON)"));
+}

@@ -105,6 +105,9 @@ TEST_CASE("a way that leads nowhere names the nearest word there is") {
   for (const char* text : {"/rules/2/factor=1", "/rules/-=1", "/rules/2=1", "/rules/01=1", "/rules/=1"})
     CHECK_THROWS_WITH_AS(with({text}), Contains("/rules is a list with elements 0 to 1"), InputError);
   CHECK_THROWS_WITH_AS(with({"/title/x=1"}), Contains("/title is a string"), InputError);
+  CHECK_THROWS_WITH_AS(with({"/title/x=1"}), Contains("give it as a whole: --set '/title=...'"), InputError);
+  CHECK_THROWS_WITH_AS(with({"/gravity/1=-9.81"}),
+                       Contains("has no /gravity, and a setting changes elements of lists and makes none"), InputError);
 }
 
 TEST_CASE("a setting is checked like the file, and messages say where the value came from") {

@@ -6,6 +6,7 @@
 #include "common/error.hpp"
 #include "common/plausible_material.hpp"
 #include "common/plausible_state.hpp"
+#include "common/residual_strength/strength_law.hpp"
 #include "common/warnings.hpp"
 
 using namespace tailrun;
@@ -78,6 +79,11 @@ TEST_CASE("materials in another unit") {
   CHECK(contains(said_of_material(R"("youngs_modulus": 5000)"), "go flat"));
   CHECK(contains(said_of_material(R"("friction_angle": 0.59)"), "0.59 radians would be 33.8 degrees"));
   CHECK(contains(said_of_material(R"("G0": 47600000)"), "coefficient without unit"));
+  CHECK(said_of_material(R"("strength": 25e3, "strength_ratio": 0.25, "atmospheric_pressure": 101300)") == "");
+  CHECK(contains(said_of_material(R"("strength": 25)"), "/strength: 25 Pa is a thousandth"));
+  CHECK(contains(said_of_material(R"("strength_ratio": 25)"), "error: "));
+  CHECK(contains(said_of_material(R"("atmospheric_pressure": 101.3)"), "no pressure of the atmosphere"));
+  CHECK(contains(said_of_material(R"("phi_b_max": 1.05)"), "1.05 radians would be 60.2 degrees"));
 }
 
 TEST_CASE("small scenes and scenes without gravity keep their small numbers") {
@@ -143,4 +149,32 @@ TEST_CASE("particles are judged by the column above them") {
   CHECK(contains(scaled(-1.0), "most likely the sign"));
   p.effective_stress.assign(400, 0.0);
   CHECK(said_of_particles() == "");
+}
+
+TEST_CASE("residual strengths from data in another unit, or from one measurement of two") {
+  const auto said_of_law = [](const std::string& keys) {
+    const auto path = std::filesystem::temp_directory_path() / "tailrun_plausible.json";
+    std::ofstream(path) << "{\"residual_strength\": {\"model\": " << keys << "}}";
+    const CaseFile file(path);
+    return said([&] { read_strength_law(file.root().object("residual_strength")); });
+  };
+  CHECK(said_of_law(R"("ratio", "ratio": 0.08)") == "");
+  CHECK(said_of_law(R"("ratio", "ratio": 8)").starts_with("error: "));
+  CHECK(contains(said_of_law(R"("ratio", "ratio": 8)"), "/residual_strength/ratio: found 8"));
+  CHECK(contains(said_of_law(R"("ratio", "ratio": 8)"), "8 % are 0.08"));
+  CHECK(contains(said_of_law(R"("ratio", "ratio": 0.08, "minimum_ratio": 2)"), "2 % are 0.02"));
+  CHECK(said_of_law(R"("olson_stark", "cone_resistance": 3e6)") == "");
+  CHECK(said_of_law(R"("olson_stark", "cone_resistance": 3)").starts_with("error: "));
+  CHECK(contains(said_of_law(R"("olson_stark", "cone_resistance": 3)"), "3 MPa are 3e+06 Pa"));
+  CHECK(contains(said_of_law(R"("olson_stark", "cone_resistance": 3000)"), "3000 kPa are 3e+06 Pa"));
+  CHECK(contains(said_of_law(R"("olson_stark", "cone_resistance": 5e4)"), "0.2 to 10 MPa"));
+  CHECK(said_of_law(R"("idriss_boulanger", "cone_resistance": 60)") == "");
+  CHECK(contains(said_of_law(R"("idriss_boulanger", "cone_resistance": 3)"), "q_c1N = 3 is less than"));
+  CHECK(contains(said_of_law(R"("robertson_2022", "cone_resistance": 3)"), "Q_tn,cs = 3 is less than"));
+  CHECK(contains(said_of_law(R"("idriss_boulanger", "cone_resistance": 60, "blow_count": 6)"),
+                 "/residual_strength/blow_count: is not used: 'idriss_boulanger' takes one of the two"));
+  CHECK(said_of_law(R"("weber", "blow_count": 6, "cone_resistance": 60)") == "");  // kept for another model
+  CHECK(contains(said_of_law(R"("weber", "blow_count": 6, "percentile": 0.33)"), "a fraction of 0.33 is 33 %"));
+  CHECK(contains(said_of_law(R"("idriss_boulanger", "blow_count": 6, "fines_content": 0.15)"),
+                 "a fraction of 0.15 is 15 %"));
 }

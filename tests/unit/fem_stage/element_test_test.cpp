@@ -7,8 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "common/error.hpp"
+#include "common/warnings.hpp"
 #include "fem_stage/element_test/calibration.hpp"
 #include "fem_stage/element_test/element_test.hpp"
+#include "fem_stage/element_test/element_test_case.hpp"
 #include "material_drive.hpp"
 
 using namespace tailrun;
@@ -101,6 +103,22 @@ TEST_CASE("element test: unknown keys, types and missing amplitudes are refused"
   CHECK_THROWS_AS(run("{" + tailings_json + R"(, "loading": {"type": "cyclic_simple_shear"}})"), InputError);
   CHECK_THROWS_AS(run("{" + tailings_json + R"(, "loading": {"type": "cyclic_simple_shear", "csr": 0.1, "csrr": 1}})"),
                   InputError);
+}
+
+TEST_CASE("element test: a stress in kPa is warned of, a cyclic stress ratio in % refused") {
+  forget_warnings();
+  const auto read = [](const std::string& stress, const std::string& csr) {
+    read_element_test(written("{" + tailings_json + R"(, "initial": {"vertical_effective_stress": )" + stress +
+                              R"(}, "loading": {"type": "cyclic_simple_shear", "csr": )" + csr + "}}"));
+  };
+  read("100000", "0.12");
+  CHECK(warnings().empty());
+  read("100", "0.12");
+  REQUIRE(warnings().size() == 1);
+  CHECK(warnings()[0].find("/initial/vertical_effective_stress: 100 Pa is the stress under less than a tenth") !=
+        std::string::npos);
+  CHECK_THROWS_WITH_AS(read("100000", "12"), doctest::Contains("12 % are 0.12"), InputError);
+  forget_warnings();
 }
 
 // Targets computed from known parameters must lead back to them.

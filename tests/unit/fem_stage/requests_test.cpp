@@ -215,3 +215,130 @@ TEST_CASE("rows and snapshots that are asked for far more often than there are s
   CHECK(warned(coarse, "").find("far below") == std::string::npos);
   CHECK(warned(fine, R"("history_interval": 0.005, "snapshot_interval": 0.5)").find("far below") == std::string::npos);
 }
+
+TEST_CASE("a pond and a phreatic line that do not meet are refused from 1 m, warned of from 0.1 m") {
+  const auto said = [](double level, double line) {
+    forget_warnings();
+    const auto path = case_file(
+        R"("duration": 1)",
+        fmt::format(R"("geostatic": {{ "seepage": "hydrostatic" }}, "phreatic_line": [[-9, {0}], [9, {0}]],)", line));
+    std::ifstream file(path);
+    std::string text((std::istreambuf_iterator<char>(file)), {});
+    file.close();
+    text.insert(text.find(R"("roller_lines")"),
+                fmt::format(R"("ponded_water": [{{ "lines": ["top"], "level": {} }}], )", level));
+    std::ofstream(path) << text;
+    const std::string refused = refusal([&] {
+      const FemCase options = read_fem_case(path, "");
+      write_rectangle_mesh(*options.mesh.rectangle, folder / "tailrun_requests.msh");
+      build_model(options, folder / "tailrun_requests.msh");
+    });
+    std::string all;
+    for (const auto& warning : warnings()) all += warning;
+    forget_warnings();
+    return refused.empty() ? all : "error: " + refused;
+  };
+  CHECK(said(9.0, 9.0) == "");
+  CHECK(said(9.0, 9.05) == "");
+  CHECK(said(9.0, 8.5).find("the phreatic line lies at 8.5 m at x = 0 m, 0.5 m below it") != std::string::npos);
+  CHECK_FALSE(said(9.0, 8.5).starts_with("error"));
+  CHECK(said(9.0, 6.0).starts_with("error: /boundaries/ponded_water/0/level: the pond stands at 9 m"));
+  CHECK(said(6.0, 9.0).find("3 m above it (off at 5 of the 5 nodes under its water)") != std::string::npos);
+}
+
+TEST_CASE("names in history.csv: none twice, none that breaks its header") {
+  const auto output = [](const std::string& places) {
+    return case_refusal(R"("duration": 1)", R"("output": { )" + places + " },");
+  };
+  CHECK(output(R"("points": { "top": [2, 4] }, "elements": { "middle": [1.5, 2.5] })") == "");
+  CHECK(output(R"("points": { "a": [2, 4] }, "elements": { "a": [1.5, 2.5] })")
+            .find("/output/elements: 'a' is the name of a point") != std::string::npos);
+  for (const char* key : {"points", "elements"})
+    CHECK(output(fmt::format(R"("{}": {{ "a,b": [2, 4] }})", key))
+              .find(fmt::format("/output/{}: the name \"a,b\" has a comma", key)) != std::string::npos);
+}
+
+TEST_CASE("a physical curve whose name no snapshot can hold is refused") {
+  Mesh mesh = blocks(0.5, 0.0);
+  CHECK(refusal([&] { check_mesh(mesh, "m.msh"); }).find("slash") == std::string::npos);
+  mesh.lines["up/down"] = mesh.lines["left"];
+  CHECK(refusal([&] {
+          check_mesh(mesh, "m.msh");
+        }).find("m.msh: the name \"up/down\" of a physical curve has a slash") != std::string::npos);
+}
+
+TEST_CASE("loads that stay at nothing while the shaking lasts are warned of") {
+  const auto warned = [](const std::string& history) {
+    forget_warnings();
+    read_fem_case(
+        case_file(R"("duration": 2)",
+                  R"("loads": [{ "line": "top", "pressure": 1e3, "stage": "shake", "history": )" + history + " }],"),
+        "");
+    std::string all;
+    for (const auto& text : warnings()) all += text;
+    forget_warnings();
+    return all;
+  };
+  std::ofstream(folder / "tailrun_requests_late.csv") << "0,0\n3,0\n4,1\n";
+  std::ofstream(folder / "tailrun_requests_soon.csv") << "0,0\n1.9,0\n4,1\n";
+  for (const char* late :
+       {R"({ "type": "ramp", "start": 5, "duration": 1 })", R"({ "type": "sine", "frequency": 1, "start": 2 })",
+        R"({ "type": "ricker", "frequency": 2, "delay": 9 })",
+        R"({ "type": "csv", "file": "tailrun_requests_late.csv" })"})
+    CHECK_MESSAGE(warned(late).find("/loads/0/history: the load never acts") != std::string::npos, late);
+  for (const char* acting :
+       {R"({ "type": "ramp", "start": 1, "duration": 1 })", R"({ "type": "sine", "frequency": 1, "start": -1 })",
+        R"({ "type": "ricker", "frequency": 2, "delay": 1 })",
+        R"({ "type": "csv", "file": "tailrun_requests_soon.csv" })"})
+    CHECK_MESSAGE(warned(acting) == "", acting);
+}
+
+TEST_CASE("the region of /output/liquefaction is looked for before anything is computed") {
+  const auto region = [](const char* name, const char* window) {
+    return case_refusal(
+        R"("duration": 1)",
+        fmt::format(R"("output": {{ "liquefaction": {{ "region": "{}", "window": {} }} }},)", name, window));
+  };
+  CHECK(region("s", "[0, 4]") == "");
+  CHECK(region("S1", "[0, 4]").find("/output/liquefaction/region: the mesh has no region 'S1'. Did you mean 's'?") !=
+        std::string::npos);
+  CHECK(region("s", "[10, 14]").find("they lie from x = 0.5 to 3.5 m") != std::string::npos);
+  CHECK(region("s", "[4, 0]").find("/output/liquefaction/window") != std::string::npos);
+}
+
+TEST_CASE("a line that the mesh lacks is refused at the key that names it") {
+  const auto with = [](const std::string& before, const std::string& after) {
+    const auto path = case_file(R"("duration": 1)");
+    std::ifstream file(path);
+    std::string text((std::istreambuf_iterator<char>(file)), {});
+    file.close();
+    text.replace(text.find(before), before.size(), after);
+    std::ofstream(path) << text;
+    return refusal([&] {
+      const FemCase options = read_fem_case(path, "");
+      write_rectangle_mesh(*options.mesh.rectangle, folder / "tailrun_requests.msh");
+      build_model(options, folder / "tailrun_requests.msh");
+    });
+  };
+  const std::string rollers = R"("roller_lines": ["left", "right"])", base = R"("line": "bottom")";
+  CHECK(with(rollers, R"("roller_lines": ["lft"])").starts_with("/boundaries/roller_lines: the mesh has no"));
+  CHECK(with(rollers, R"("geostatic_roller_lines": ["lft"])").starts_with("/boundaries/geostatic_roller_lines: "));
+  CHECK(with(rollers, rollers + R"(, "periodic_lines": ["lft"])").starts_with("/boundaries/periodic_lines: "));
+  CHECK(with(base, R"("line": "botom")")
+            .find("/boundaries/base/line: the mesh has no physical curve 'botom'. Did you mean "
+                  "'bottom'?") != std::string::npos);
+}
+
+TEST_CASE("snapshots after the end of the consolidation are warned of") {
+  const auto warned = [](const char* times) {
+    forget_warnings();
+    read_fem_case(case_file(R"("duration": 2)",
+                            fmt::format(R"("consolidation": {{ "duration": 100, "snapshots": {} }},)", times)),
+                  "");
+    const auto count = warnings().size();
+    forget_warnings();
+    return count;
+  };
+  CHECK(warned("[50, 100]") == 0);
+  CHECK(warned("[50, 500]") == 1);
+}

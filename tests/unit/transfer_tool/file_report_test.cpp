@@ -102,6 +102,23 @@ TEST_CASE("a program's own restart state beside a snapshot is listed") {
   CHECK(report_text(report).find("3 x 2") != std::string::npos);
 }
 
+TEST_CASE("a checkpoint is called one, with what it holds and without points that it cannot have") {
+  const example::TemporaryFolder folder;
+  {
+    tailrun::Hdf5Writer file(folder / "checkpoint.h5");
+    file.group("/tailrun");
+    file.attribute("/tailrun", "format", std::string("mpm_checkpoint"));
+    file.attribute("/tailrun", "format_version", 1.0);
+    file.write("/particles/position", std::vector<double>{1, 2, 3, 4}, 2, "m", "position");
+    file.commit();
+  }
+  const std::string text = report_text(read_file_report(folder / "checkpoint.h5"));
+  CHECK(text.find("a checkpoint: what a run that was stopped goes on from") != std::string::npos);
+  CHECK(text.find("/particles/position") != std::string::npos);
+  CHECK(text.find("0 points") == std::string::npos);
+  CHECK(text.find("field") == std::string::npos);
+}
+
 TEST_CASE("missing, foreign and truncated files are refused with a clear message") {
   const example::TemporaryFolder folder;
   const auto message = [](const std::filesystem::path& path) {

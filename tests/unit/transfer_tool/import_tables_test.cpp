@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "common/error.hpp"
+#include "common/warnings.hpp"
 #include "example_mesh.hpp"
 
 using namespace tailrun::transfer;
@@ -143,4 +144,62 @@ TEST_CASE("ponded water stands on lines of the tables") {
   const auto refusal = example::message_of<tailrun::InputError>(
       [] { Tables().snapshot(R"(, "ponded_water": [{"lines": ["surfce"], "level": 1.5}])"); });
   CHECK(refusal.find("Did you mean 'surface'?") != std::string::npos);
+}
+
+TEST_CASE("half a state before the shaking is refused, none is warned of when time has passed") {
+  const Tables tables;
+  const auto said = [&](const std::string& more) {
+    tailrun::forget_warnings();
+    tailrun::Provenance provenance;
+    const auto path =
+        tables.folder.write("half.json", R"({"nodes": "nodes.csv", "quads": "quads.csv", "node_state": "node_state.csv",
+        "element_state": "element_state.csv", "regions": {"sand": {"density": 1900}, "clay": {"density": 1700}})" +
+                                             more + "}");
+    const std::string refusal =
+        example::message_of<tailrun::InputError>([&] { import_tables(tailrun::CaseFile(path), provenance); });
+    std::string all;
+    for (const auto& warning : tailrun::warnings()) all += warning;
+    tailrun::forget_warnings();
+    return refusal.empty() ? all : "error: " + refusal;
+  };
+  const std::string nodes = R"(, "initial_node_state": "nodes_before.csv")",
+                    elements = R"(, "initial_element_state": "elements_before.csv")";
+  CHECK(said(nodes + elements + R"(, "time": 3)") == "");
+  CHECK(said("") == "");
+  CHECK(said(R"(, "time": 3)").find("counts as the one before the shaking, so that r_u is 0") != std::string::npos);
+  CHECK(said(elements).find("/initial_node_state: missing, while 'initial_element_state' is given") !=
+        std::string::npos);
+  CHECK(said(nodes).starts_with("error: "));
+}
+
+TEST_CASE("a phreatic line whose x descend, water's density and gravity in other units") {
+  const auto refused = [](const std::string& more) {
+    return example::message_of<tailrun::InputError>([&] { Tables().snapshot(more); });
+  };
+  CHECK(refused(R"(, "phreatic_line": [[2, 1], [0, 1]])").find("x must ascend") != std::string::npos);
+  CHECK(refused(R"(, "fluid_density": 1)").find("/fluid_density: found 1 kg/m3") != std::string::npos);
+  CHECK(refused(R"(, "gravity": -9.81)").find("upwards") != std::string::npos);
+}
+
+TEST_CASE("tables that are none, and what their first line lacks") {
+  const auto message = [](const char* name, const std::string& text) {
+    const Tables tables;
+    tables.folder.write(name, text);
+    return example::message_of<tailrun::InputError>([&] { tables.snapshot(); });
+  };
+  CHECK(
+      message("nodes.csv", "11,0,0,base\n12,1,0,base\n").find("line 1: found a number ('11,0,0,base'), but a header") !=
+      std::string::npos);
+  CHECK(message("nodes.csv", "node;x;y\n11;0;0\n").find("separated by semicolons") != std::string::npos);
+  CHECK(message("nodes.csv", "\x89HDF\r\n\x1a\n").find("found an HDF5 file, but a table (CSV)") != std::string::npos);
+  CHECK(message("quads.csv", "element,n1,n2,n3,n4,region\n5,11,12,15,15,sand\n6,12,13,16,15,clay\n")
+            .find("line 2, column 'n4': node 15 is n3 already") != std::string::npos);
+  CHECK(message("nodes.csv", "node,x,y,lines\n11,0,0,a/b\n12,1,0,\n13,2,0,\n14,0,1,\n15,1,1,\n16,2,1,\n")
+            .find("column 'lines': the name \"a/b\" of a line has a slash") != std::string::npos);
+}
+
+TEST_CASE("lines that end with CR alone are read") {
+  const Tables tables;
+  tables.folder.write("nodes_before.csv", "node,p_kPa\r11,10\r12,10\r13,10\r14,0\r15,0\r16,0\r");
+  CHECK(tables.snapshot().excess_pore_pressure[0] == doctest::Approx(3e3));
 }

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/error.hpp"
+#include "common/warnings.hpp"
 #include "example_mesh.hpp"
 
 using namespace tailrun::transfer;
@@ -140,4 +141,21 @@ TEST_CASE("wrong rules are answered with the place and the nearest name") {
   CHECK(error_of(R"([{"material": "a", "when": {"depth": {"above": 2, "below": 1}}}])").find("empty") !=
         std::string::npos);
   CHECK(error_of(R"([{"when": {}}])").find("/rules/0/material: missing") != std::string::npos);
+}
+
+TEST_CASE("a bound on sigma'_v0 in kPa is warned of") {
+  const auto warned = [](const char* bound) {
+    tailrun::forget_warnings();
+    Column().materials(std::string(R"([{"material": "a", "when": {"initial_vertical_effective_stress": )") + bound +
+                       R"(}}, {"material": "b"}])");
+    std::string all;
+    for (const auto& text : tailrun::warnings()) all += text;
+    tailrun::forget_warnings();
+    return all;
+  };
+  CHECK(warned(R"({"above": 2e4, "at_most": 1e5})") == "");
+  CHECK(warned(R"({"above": 0})") == "");
+  CHECK(
+      warned(R"({"at_most": 20})").find("initial_vertical_effective_stress/at_most: 20 Pa is the stress under less") !=
+      std::string::npos);
 }

@@ -23,6 +23,17 @@ std::string error_of(const std::string& json) {
 
 }  // namespace
 
+TEST_CASE("a bed's name can be a dataset's, and is no wall's") {
+  const auto named = [](const std::string& name) {
+    return error_of(R"({"terrain": {"regions": ["foundation"], "name": ")" + name +
+                    R"("}, "rules": [{"material": "a"}]})");
+  };
+  CHECK(named("bed rock") == "");
+  CHECK(named("a/b").find("/terrain/name: the name \"a/b\" has a slash") != std::string::npos);
+  CHECK(named("").find("is empty") != std::string::npos);
+  CHECK(named("upstream_wall").find("which is a wall's name") != std::string::npos);
+}
+
 TEST_CASE("a size that the case does not have is refused, with the nearest one") {
   const tailrun::CaseFile file(std::string(TAILRUN_SOURCE_DIR) + "/cases/mochikoshi/transfer.json");
   CHECK_THROWS_WITH_AS(read_transfer_case(file, mochikoshi_regions, "coarze"),
