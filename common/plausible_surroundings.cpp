@@ -21,7 +21,8 @@ struct GravityUnit {
   const char* name;
   double earth;  // in this unit
 };
-constexpr GravityUnit gravity_units[] = {{"g", 1.0}, {"ft/s2", 32.174}, {"cm/s2", 981.0}, {"mm/s2", 9810.0}};
+constexpr GravityUnit gravity_units[] = {
+    {"g", 1.0}, {"ft/s2", 32.174}, {"in/s2", 386.1}, {"cm/s2", 981.0}, {"mm/s2", 9810.0}};
 
 // "; 1.9 g/cm3 are 1900 kg/m3", of a density that is too small to be kg/m3.
 std::string likely_density(double density, double gravity) {

@@ -4,28 +4,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/plausible_surroundings.hpp"
 #include "mpm_stage/scene/scene_checks.hpp"
 
 namespace tailrun::mpm {
 
 namespace {
 
-constexpr double least = 9.6, most = 10.1;  // m/s2: the earth's, rounded to 10 and of tilted scenes
-constexpr double earth = 9.81;              // m/s2
-constexpr double steep = 60.0;              // degrees: scenes that tilt gravity in place of the ground stay below
-
-// "; 32.2 ft/s2 are 9.81 m/s2", or nothing.
-std::string likely_unit(double size) {
-  struct Unit {
-    const char* name;
-    double in_si;  // m/s2
-  };
-  for (const auto& [name, in_si] :
-       {Unit{"ft/s2", 0.3048}, {"in/s2", 0.0254}, {"cm/s2", 0.01}, {"mm/s2", 1e-3}, {"g", earth}})
-    if (const double meant = size * in_si; meant > least && meant < most)
-      return fmt::format("; {:g} {} are {:.3g} m/s2", size, name, meant);
-  return "";
-}
+constexpr double steep = 60.0;  // degrees: scenes that tilt gravity in place of the ground stay below
 
 std::string text_of(const Scene& scene) {
   const auto& g = scene.gravity;
@@ -67,9 +53,7 @@ void check_gravity(const CaseNode& root, const Scene& scene) {
   const auto& g = scene.gravity;
   const double size = std::hypot(g[0], g[1], g[2]);
   if (!(size > 0.0)) return;
-  if (size < least || size > most)
-    root.warn("gravity", fmt::format("{} has a size of {:g} m/s2, the earth's is {:g}{}", text_of(scene), size, earth,
-                                     likely_unit(size)));
+  tailrun::check_gravity(root, "gravity", size);
   const double off = std::acos(-g[1] / size) * 180.0 / std::numbers::pi;
   if (const Support support = support_of(scene); support.any && !support.holds)
     root.fail("gravity",

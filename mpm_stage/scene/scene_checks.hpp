@@ -7,8 +7,8 @@
 
 namespace tailrun::mpm {
 
-// Its size (9.6 to 10.1 m/s2 on earth; scenes without gravity are patches and waves), and its direction: over 60
-// degrees off -y is a warning, for y is up; an error where neither ground nor walls stand against it
+// Its size (common/plausible_surroundings.hpp; scenes without gravity are patches and waves), and its direction: over
+// 60 degrees off -y is a warning, for y is up; an error where neither ground nor walls stand against it
 // (gravity_checks.cpp).
 void check_gravity(const CaseNode& root, const Scene& scene);
 
