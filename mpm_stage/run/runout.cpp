@@ -164,10 +164,10 @@ class Runout {
   }
 
   // A state at rest that was handed over has borne its own weight so far. One that moves has not, and its stresses come
-  // from elements that liquefy one by one: the main case begins at 1 to 2. Scenes made here may begin without any
+  // from elements that liquefy one by one: the main case begins at 0.5 to 0.8. Scenes made here may begin without any
   // stress.
   void warn_if_unbalanced() const {
-    constexpr double rest = 1e-3, most_at_rest = 0.5, most_moving = 5.0;  // m/s; 1
+    constexpr double rest = 1e-3, most_at_rest = 0.5, most_moving = 2.0;  // m/s; 1
     if (scene_.inputs.empty()) return;
     const auto& velocity = scene_.particles.velocity;
     const bool at_rest = std::all_of(velocity.begin(), velocity.end(), [](double v) { return std::fabs(v) < rest; });
