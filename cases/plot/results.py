@@ -68,6 +68,8 @@ def runout(mpm):
         ("MPM", f"  of {100.0 * body:g} % of what flowed", show(mpm.get("runout_of_body_m"), 1), "m"),
         ("MPM", "  without gaps", show(mpm.get("coherent_runout_m"), 1), "m"),
     ]
+    if (mpm.get("runout_m") or 0.0) < 0.0:
+        ran = [("MPM", "runout from that toe", f"none, what flowed ends {-mpm['runout_m']:.1f} m short of it", "")]
     if mpm.get("runout_m") is None:
         ran = [("MPM", "runout from that toe", f"none, nothing moved by more than {mpm['flow_distance_m']:g} m", "")]
     return [("MPM", "toe before the motion, x", show(mpm["initial_toe_m"], 1), "m"), *ran, ("MPM", "freeboard lost", said, "m")]

@@ -34,7 +34,7 @@ def add(rows, phase):
     numbers, found = known["numbers"], []
     for stage, what, value, unit in rows:
         name, factor, digits = ROWS.get((stage, what), ("", 1.0, 0))
-        if name in numbers and value != "-":
+        if name in numbers and value != "-" and not value.startswith("none"):
             value = f"{value} +- {numbers[name]['standard_deviation'] * factor:.{digits}f}"
         found.append((stage, what, value, unit))
     found.append(("", "+- over", f"{known['members']} runs that differ in nothing physical ({', '.join(known['varied'])})", ""))

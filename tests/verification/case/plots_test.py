@@ -62,6 +62,8 @@ assert rows[0] == ("MPM", "strength, liquefied", "1.60 to 4.55, mean 3.00", "kPa
 rows = results.runout({"initial_toe_m": 88.0, "runout_m": None, "runout_quantiles": [0.999, 0.9], "freeboard_lost_m": 2.5, "flow_distance_m": 1.0,
                        "ground_before_m": 24.25, "ground_after_m": 21.75})
 assert [row[2] for row in rows] == ["88.0", "none, nothing moved by more than 1 m", "2.50 (24.2 to 21.8)"], rows
+rows = results.runout({"initial_toe_m": 88.0, "runout_m": -26.0, "runout_quantiles": [0.999, 0.9], "freeboard_lost_m": 0.2, "flow_distance_m": 1.0})
+assert ("MPM", "runout from that toe", "none, what flowed ends 26.0 m short of it", "") in rows, rows
 assert results.runout({"runout_m": 1.0}) == []  # of an earlier version, which meant something else
 
 # The ground before the motion leaves out what hangs above it, and goes back by the displacement.
