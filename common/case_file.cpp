@@ -40,6 +40,7 @@ struct CaseFile::State {
   std::map<std::string, std::set<std::string>> known;  // by pointer of the object
   std::map<std::string, const Json*> visited;          // objects that somebody read
   std::vector<std::string> echo;
+  std::vector<std::filesystem::path> inputs;
 
   // Behind a pointer in messages: that its value is not the file's own.
   std::string origin(const std::string& pointer) const { return is_set(pointer, settings) ? " (from --set)" : ""; }
@@ -76,6 +77,7 @@ std::string number_hint(const std::string& text, std::string_view unit) {
 
 CaseFile::CaseFile(const std::filesystem::path& path) : state_(std::make_shared<State>()) {
   state_->path = path;
+  state_->inputs = {path};
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored))
     throw InputError(fmt::format("{}: is a folder, but a case file (JSON) is required", path.string()));
@@ -109,6 +111,9 @@ const std::string& CaseFile::text() const {
 }
 std::vector<std::string> CaseFile::echo() const {
   return state_->echo;
+}
+std::vector<std::filesystem::path> CaseFile::inputs() const {
+  return state_->inputs;
 }
 
 void CaseFile::finish() const {
@@ -346,6 +351,7 @@ std::filesystem::path CaseNode::file(const std::string& key) const {
                           given.string(), path.string()));
   if (!std::filesystem::is_regular_file(status))
     fail(key, fmt::format("found '{}', but {} is no file", given.string(), path.string()));
+  state_->inputs.push_back(path);
   return path;
 }
 

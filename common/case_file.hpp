@@ -55,6 +55,9 @@ class CaseFile {
   // Every option read, a line each: pointer, value, unit, and at its end "(default)" or, of what the file says and is
   // not the default, "(default: <value>)".
   std::vector<std::string> echo() const;
+  // The file itself and all files that it names and that were asked for (CaseNode::file): no result may take their
+  // place.
+  std::vector<std::filesystem::path> inputs() const;
 
  private:
   friend class CaseNode;

@@ -88,6 +88,19 @@ void check_output_file(const fs::path& path, const std::vector<fs::path>& inputs
   check_output_file(path);
 }
 
+void require_results_apart(const fs::path& folder, const std::vector<std::string>& names,
+                           const std::vector<fs::path>& inputs) {
+  for (const fs::path& input : inputs)
+    for (const std::string& name : names) {
+      std::error_code failed;
+      if (!input.empty() && fs::equivalent(folder / name, input, failed))
+        throw InputError(
+            fmt::format("{}: a result of this name would take the place of the input {}; give another folder with -o, "
+                        "or the input another name",
+                        (folder / name).string(), input.string()));
+    }
+}
+
 fs::path temporary_name(const fs::path& path) {
   return path.string() + fmt::format(".{}.part", getpid());
 }

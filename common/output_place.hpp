@@ -18,6 +18,10 @@ void check_output_file(const std::filesystem::path& path, const std::vector<std:
 // Throws InputError when `path` is `input`, under whatever name.
 void require_no_input(const std::filesystem::path& path, const std::filesystem::path& input);
 
+// Throws InputError when one of the `inputs` is one of the files `names` in `folder`, which are about to be written.
+void require_results_apart(const std::filesystem::path& folder, const std::vector<std::string>& names,
+                           const std::vector<std::filesystem::path>& inputs);
+
 // Throws InputError when `path` exists and is no regular file: what every writer asks for right before it writes.
 void require_replaceable(const std::filesystem::path& path);
 

@@ -55,8 +55,11 @@ void check_material(const CaseNode& node, const MaterialSetting& setting) {
   const auto density = node.peek("density");
   if (density) check_density(node, *density, setting);
   const double weight = density.value_or(1800.0) * setting.gravity * setting.height;
+  // Slurry has a few pascals; frictional soil is given as few for the sake of numbers.
+  const bool has_more = setting.flows_by_rate || node.peek("friction_angle").value_or(0.0) > 0.0;
   for (const char* key : {"cohesion", "strength"})
-    if (const auto c = node.peek(key); c && *c > 0.0 && *c < least_strength && *c < least_share_strength * weight)
+    if (const auto c = node.peek(key);
+        !has_more && c && *c > 0.0 && *c < least_strength && *c < least_share_strength * weight)
       node.warn(key,
                 fmt::format("{:g} Pa is a thousandth of what soils have; is it {:g} kPa = {:g} Pa?", *c, *c, 1e3 * *c));
   check_fraction(node, "strength_ratio", overconsolidated);

@@ -14,13 +14,16 @@ struct MaterialSetting {
   double height = 10.0;           // m, of the soil: its own weight is what strength and stiffness are compared with
   double water_density = 1000.0;  // kg/m3
   bool has_water = false;
+  bool flows_by_rate = false;  // its strength grows with the rate of shear
 };
 
 // One entry of "materials". Keys, as far as they are there, and their reasons:
 //   density          under 30: g/cm3 or kN/m3 (error). Under water's, where there is water, the soil would float and
 //   its
 //                    effective stress be a tension; beyond 4000 no soil or rock of a dam is
-//   cohesion         above 0 and under both 100 Pa and a thousandth of the soil's weight: kPa
+//   cohesion         above 0 and under both 100 Pa and a thousandth of the soil's weight: kPa, where it is all the
+//   strength
+//                    (neither friction nor "rate" beside it)
 //   shear_modulus, youngs_modulus
 //                    under half of the soil's weight, which it would not carry without flattening: kPa or MPa
 //   friction_angle, phi_cv, phi_b_max

@@ -125,6 +125,30 @@ void check_weight(const StateColumns& s) {
     add_warning(fmt::format("{}; are its units and signs right?", words));
 }
 
+void check_effective(const StateColumns& s) {
+  if (!s.before_motion || s.weight_above.size() != s.vertical_effective.size()) return;
+  constexpr double least_share = 0.2, least = 0.5, most = 1.7;
+  double effective = 0.0, left = 0.0, weight = 0.0;
+  for (std::size_t i = 0; i < s.weight_above.size(); ++i) {
+    effective += s.vertical_effective[i];
+    left += s.weight_above[i] - s.pore_pressure[i];
+    weight += s.weight_above[i];
+  }
+  if (weight / static_cast<double>(std::max<std::size_t>(s.weight_above.size(), 1)) < least_sum ||
+      left < least_share * weight)
+    return;
+  const double ratio = effective / left;
+  const std::string words = fmt::format(
+      "{}: sigma'_v0 is {:.3g} times what the weight of soil and water above leaves beside the pore pressure, on the "
+      "mean of {} {}",
+      s.file, ratio, s.weight_above.size(), s.what);
+  if (ratio > 0.0 && ratio < 1.0 / impossible_factor)
+    throw InputError(fmt::format("{}; {}", words, likely_unit(ratio)));
+  if (ratio < least || ratio > most)
+    add_warning(fmt::format("{}; are these effective stresses{}?", words,
+                            ratio > most ? ", not total ones" : ", in the unit of the pore pressures"));
+}
+
 void check_pressure(const StateColumns& s) {
   double pressure = 0.0, at_rest = 0.0;
   for (std::size_t i = 0; i < s.hydrostatic.size(); ++i)
@@ -168,6 +192,7 @@ void check_state(const StateColumns& state) {
   check_density(state);
   check_tension(state);
   check_weight(state);
+  check_effective(state);
   check_pressure(state);
   check_ratio(state);
 }
@@ -177,6 +202,7 @@ StateColumns columns_of(const Snapshot& snapshot, const std::string& file, const
   StateColumns s;
   s.file = file;
   s.what = "elements";
+  s.before_motion = true;
   s.water_density = snapshot.fluid_density;
   if (snapshot.gravity <= 0.0) return s;
   const bool wet = snapshot.phreatic_line.size() >= 2;

@@ -22,6 +22,7 @@ struct StateColumns {
   std::vector<double> pore_pressure;       // Pa
   std::vector<double> hydrostatic;         // Pa, below the phreatic line; empty without one
   double water_density = 1000.0;           // kg/m3
+  bool before_motion = false;              // sigma'_v0, weight and pore pressure are of one time
 };
 
 // In the order of the checks, with their reasons:
@@ -31,6 +32,10 @@ struct StateColumns {
 //   total vertical stress against the weight above, summed: an arch or a slope moves it by tens of per cent. Off by
 //   more
 //     than 2 a warning, by more than 10 an error, with the unit whose factor fits
+//   sigma'_v0 against what the weight above leaves beside the pore pressure, summed, where that is a fifth of the
+//   weight
+//     or more: water alone may carry half of the total, so stresses in kPa beside pressures in Pa pass the check
+//     before. Under a tenth an error, under half or over 1.7 (total stresses given as effective ones) a warning
 //   pore pressure against that of water at rest below the phreatic line, summed: under a hundredth, kPa (warning)
 //   r_u outside [-0.5, 1.2]: dilation and what flows in pass that here and there. Beyond a tenth of all a warning
 void check_state(const StateColumns& state);

@@ -70,10 +70,23 @@ Model model_of(const Arguments& arguments, const FemCase& options) {
   }
 }
 
+// The case, and the folder of its results for this process alone. Whatever command comes: no result may take the place
+// of what the case names. Meshes and states go by names of their own (mesh.msh, geostatic.h5, snapshots), which
+// commands read from the folder.
+FemCase case_with_folder(const Arguments& arguments) {
+  FemCase options = read_fem_case(arguments.case_file, arguments.size);
+  hold_output_folder(arguments.folder);
+  std::vector<std::string> results = {"mesh.json",   "geostatic.json", "summary.json",           "consolidation.json",
+                                      "history.csv", "quality.csv",    "snapshots.vtkhdf.series"};
+  for (const char* stage : {"geostatic", "shake", "consolidation"})
+    results.push_back(std::string(stage) + ".options.txt");
+  require_results_apart(arguments.folder, results, options.inputs);
+  return options;
+}
+
 // Geometry -> mesh.msh, or a copy of the case's own mesh file, with a report on its quality.
 void make_mesh(const Arguments& arguments) {
-  const FemCase options = read_fem_case(arguments.case_file, arguments.size);
-  hold_output_folder(arguments.folder);
+  const FemCase options = case_with_folder(arguments);
   const fs::path output = fs::path(arguments.folder) / "mesh.msh";
   require_replaceable(output);
   Mesh mesh;
@@ -104,8 +117,7 @@ void tell_options(const Arguments& arguments, const FemCase& options, const std:
 
 // Mesh -> geostatic.h5: the dam at rest before the earthquake.
 void make_geostatic(const Arguments& arguments) {
-  FemCase options = read_fem_case(arguments.case_file, arguments.size);
-  hold_output_folder(arguments.folder);
+  FemCase options = case_with_folder(arguments);
   require_replaceable(fs::path(arguments.folder) / "geostatic.h5");
   tell_options(arguments, options, "geostatic");
   options.provenance.add_file(mesh_path(arguments));
@@ -148,8 +160,7 @@ std::string resume_command(const Arguments& arguments) {
 
 // geostatic.h5 (or any state file) and the motion -> snapshots, histories, summary.json.
 void make_shake(const Arguments& arguments, bool echo) {
-  FemCase options = read_fem_case(arguments.case_file, arguments.size);
-  hold_output_folder(arguments.folder);
+  FemCase options = case_with_folder(arguments);
   const Motion motion = case_motion(options);
   tell_options(arguments, options, "shake", echo);
   options.provenance.add_file(mesh_path(arguments));
@@ -183,8 +194,7 @@ void make_shake(const Arguments& arguments, bool echo) {
 
 // A state after the shaking -> its pore pressures at rest again.
 void make_consolidation(const Arguments& arguments) {
-  FemCase options = read_fem_case(arguments.case_file, arguments.size);
-  hold_output_folder(arguments.folder);
+  FemCase options = case_with_folder(arguments);
   tell_options(arguments, options, "consolidation");
   options.provenance.add_file(mesh_path(arguments));
   options.provenance.add_file(arguments.from);

@@ -21,6 +21,7 @@
 #include "common/command_line.hpp"
 #include "common/interrupt.hpp"
 #include "common/output_lock.hpp"
+#include "common/output_place.hpp"
 #include "common/patient_threads.hpp"
 #include "mpm_stage/output/place_checks.hpp"
 #include "mpm_stage/run/program_of_solver.hpp"
@@ -59,6 +60,12 @@ int main(int argc, char** argv) {
     file.finish();
     check_output_places(file.root(), scene);
     hold_output_folder(output);
+    std::vector<std::filesystem::path> inputs = file.inputs();
+    inputs.insert(inputs.end(), scene.inputs.begin(), scene.inputs.end());
+    std::vector<std::string> results = {"summary.json", "options.txt", "front.csv",
+                                        "ledger.csv",   "bodies.csv",  "sections.csv"};
+    for (const auto& input : inputs) results.push_back("frames/" + input.filename().string());
+    require_results_apart(output, results, inputs);
     if (!control.resume) check_space(scene, output);
     const std::string title = "mpm_stage run " + case_path.string();
     echo_options(title, file.echo(), output / "options.txt");

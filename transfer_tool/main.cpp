@@ -103,6 +103,7 @@ void hand_over(const RunOptions& options) {
   const CaseFile file(options.case_path);
   provenance.add_text(file.path(), file.text());
   const Snapshot snapshot = read_state(options, provenance);
+  for (const auto& input : provenance.inputs) require_no_input(options_of(options.output_path), input);
   const TransferCase wanted = read_transfer_case(file, snapshot.region_names, options.size);
   const std::string title = "transfer_tool run " + options.case_path;
   const std::filesystem::path all = options_of(options.output_path);
@@ -165,7 +166,10 @@ void import(const std::string& case_path, const std::string& output_path) {
   Provenance provenance{"transfer_tool", {}, {}};
   const CaseFile file(case_path);
   const Snapshot snapshot = import_tables(file, provenance);
-  for (const auto& input : provenance.inputs) require_no_input(output_path, input);
+  for (const auto& input : provenance.inputs) {
+    require_no_input(output_path, input);
+    require_no_input(options_of(output_path), input);
+  }
   check_standing_water(snapshot, std::vector<bool>(snapshot.elements(), true), pond_reaches(snapshot), true);
   check_state(columns_of(snapshot, case_path, {}, true));
   const std::string title = "transfer_tool import " + case_path;

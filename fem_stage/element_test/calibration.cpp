@@ -12,6 +12,7 @@
 #include "common/case_file.hpp"
 #include "common/error.hpp"
 #include "common/json_text.hpp"
+#include "common/output_place.hpp"
 #include "common/warnings.hpp"
 #include "fem_stage/element_test/calibration_targets.hpp"
 #include "fem_stage/element_test/curve_picture.hpp"
@@ -248,6 +249,9 @@ int run_calibration(const CalibrationOptions& options) {
   if (given == nullptr) root.fail("material/model", "only pm4sand can be calibrated");
   const Targets targets = read_targets(root);
   file.finish();
+  require_results_apart(options.output_folder,
+                        {"calibration.json", "cyclic_strength.csv", "residual_strength.csv", "calibration.svg"},
+                        file.inputs());
 
   Calibrated result = calibrated(*given, targets);
   Json by_Q;

@@ -32,6 +32,16 @@ void limit_steps(const CaseNode& node, const std::string& key, double length, do
                           step, length / step, what, length, most_steps));
 }
 
+// m, of the soil, before a mesh is there to measure it: that of a rectangle, else of a dam, in a centrifuge of its
+// model.
+double likely_height(const MeshOptions& mesh, double gravity) {
+  constexpr double dam = 30.0, earth = 9.81;  // m, m/s2
+  if (!mesh.rectangle) return dam * earth / std::max(gravity, earth);
+  double height = 0.0;
+  for (const RectangleLayer& layer : mesh.rectangle->layers) height += layer.height;
+  return height;
+}
+
 RectangleMesh read_rectangle(const CaseNode& node) {
   RectangleMesh out;
   const auto origin = node.numbers_or("origin", "m", Range::any(), {0.0, 0.0}, 2);
@@ -259,7 +269,7 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
     out.materials.push_back(read_material(node, name));
     MaterialSetting setting;
     setting.gravity = out.gravity;
-    setting.height = 30.0;  // of a dam; the mesh is not known here
+    setting.height = likely_height(out.mesh, out.gravity);
     setting.water_density = out.fluid_density;
     setting.has_water = !out.phreatic_line.empty();
     check_material(node, setting);
@@ -306,6 +316,7 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
   warn_of_idle_loads(root, out.loads, out.shake.duration, out.shake.time_step);
   file.finish();
   out.echo = file.echo();
+  out.inputs = file.inputs();
   out.provenance.program = "fem_stage";
   out.provenance.add_text(path, file.text());
   return out;

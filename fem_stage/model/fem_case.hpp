@@ -107,6 +107,7 @@ struct OutputOptions {
 
 struct FemCase {
   Provenance provenance;
+  std::vector<std::filesystem::path> inputs;  // the case and what it names
   std::vector<std::string> echo;
   MeshOptions mesh;
   double gravity = 9.81;              // m/s2

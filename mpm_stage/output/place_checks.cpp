@@ -65,15 +65,14 @@ void check_sections(const CaseNode& root, const Scene& scene, const std::vector<
   for (std::size_t k = 0; k < scene.output.sections.size(); ++k) {
     const FlowSection& section = scene.output.sections[k];
     const double last = sign > 0.0 ? soil.low : soil.high;  // the hindmost soil
-    const char* why = sign * (section.at - last) <= 0.0                   ? "all soil that can move lies ahead of it"
-                      : section.at < reach.low || section.at > reach.high ? "it lies off the scene"
-                                                                          : nullptr;
+    const char* why = sign * (section.at - last) <= 0.0 ? "nothing will pass, all soil that can move lies ahead of it"
+                      : section.at < reach.low || section.at > reach.high
+                          ? "far beyond the ground that was drawn, which goes on as it ends; is it meant?"
+                          : nullptr;
     if (why)
-      root.warn(
-          fmt::format("output/sections/{}/at", k),
-          fmt::format("nothing will pass '{}' at {:g} m: {} (soil from {:g} to {:g} m, with the ground {:g} to {:g} "
-                      "m)",
-                      section.name, section.at, why, soil.low, soil.high, all.low, all.high));
+      root.warn(fmt::format("output/sections/{}/at", k),
+                fmt::format("'{}' at {:g} m: {} (soil from {:g} to {:g} m, with the ground {:g} to {:g} m)",
+                            section.name, section.at, why, soil.low, soil.high, all.low, all.high));
   }
 }
 

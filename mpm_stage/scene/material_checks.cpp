@@ -91,6 +91,9 @@ void check_materials(const CaseNode& root, const Scene& scene) {
   setting.height = std::max(high - low, scene.cell_size);
   setting.has_water = wettest > 0.0;
   for (const auto& [name, node] : root.object("materials").members()) {
+    setting.flows_by_rate = std::any_of(scene.materials.begin(), scene.materials.end(), [&name](const Material& m) {
+      return m.name == name && m.rate.consistency > 0.0;
+    });
     check_material(node, setting);
     check_grains(node, setting);
     check_fluid(node, setting);

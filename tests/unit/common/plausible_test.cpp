@@ -75,6 +75,10 @@ TEST_CASE("materials in another unit") {
   CHECK(said_of_material(R"("density": 900)") == "");
   CHECK(contains(said_of_material(R"("density": 117)", wet), "117 lb/ft3 are 1874 kg/m3"));
   CHECK(contains(said_of_material(R"("cohesion": 15)"), "is it 15 kPa = 15000 Pa?"));
+  CHECK(said_of_material(R"("cohesion": 15, "friction_angle": 25)") == "");
+  MaterialSetting slurry;
+  slurry.flows_by_rate = true;
+  CHECK(said_of_material(R"("cohesion": 15)", slurry) == "");
   CHECK(contains(said_of_material(R"("shear_modulus": 40000)"), "is it 40000 kPa"));
   CHECK(contains(said_of_material(R"("youngs_modulus": 5000)"), "go flat"));
   CHECK(contains(said_of_material(R"("friction_angle": 0.59)"), "0.59 radians would be 33.8 degrees"));
@@ -106,6 +110,11 @@ TEST_CASE("a state in balance passes; one in another unit or of another sign doe
   CHECK(contains(said_of(column(-1.0)), "5 of 5 elements"));
   CHECK(contains(said_of(column(1.0, 1e-3)), "initial pore pressure below the phreatic line is 0.001 times"));
   CHECK(contains(said_of(column(3.0, -1.0)), "is a suction"));
+  // Half of the total is water's: only beside it the stresses show what they are.
+  CHECK(said_of(column(1e-3, 1.0)).starts_with("error: s.h5: sigma'_v0 is 0.001 times"));
+  CHECK(contains(said_of(column(1e-3, 1.0)), "most likely kPa were taken for Pa"));
+  CHECK(contains(said_of(column(1.96, 1.0)), "not total ones?"));
+  CHECK(said_of(column(1.4, 1.0)) == "");
 }
 
 TEST_CASE("densities, r_u and single elements in tension") {

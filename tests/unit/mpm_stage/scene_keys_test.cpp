@@ -99,7 +99,7 @@ TEST_CASE("places of the output where there is no soil are warned of") {
   warned(R"({"output": {"points": [{"name": "crest", "position": [1e5, 2]}]}})",
          "/output/points/0/position: 'crest' at (100000, 2) m is 1e+05 m from the nearest soil");
   warned(R"({"output": {"sections": [{"name": "valley", "at": 1e5}]}})",
-         "/output/sections/0/at: nothing will pass 'valley' at 100000 m: it lies off the scene");
+         "/output/sections/0/at: 'valley' at 100000 m: far beyond the ground that was drawn");
   warned(R"({"output": {"sections": [{"name": "valley", "at": -20}]}})", "all soil that can move lies ahead of it");
   warned(R"({"output": {"toe": 4000}})", "/output/toe: 4000 m is off the dam");
   warned(R"({"output": {"footprint": [10, 20]}})", "/output/footprint: [10, 20] m holds no soil");
