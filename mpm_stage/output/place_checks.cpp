@@ -7,21 +7,13 @@
 #include <limits>
 
 #include "mpm_stage/output/runout_measures.hpp"
+#include "mpm_stage/scene/span.hpp"
 
 namespace tailrun::mpm {
 
 namespace {
 
 constexpr double endless = std::numeric_limits<double>::infinity();
-
-struct Span {
-  double low = endless, high = -endless;  // m
-  void add(double x) {
-    low = std::min(low, x);
-    high = std::max(high, x);
-  }
-  double length() const { return high - low; }
-};
 
 void check_points(const CaseNode& root, const Scene& scene, const std::vector<bool>& moves) {
   const ParticleSet& set = scene.particles;

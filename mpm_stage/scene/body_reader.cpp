@@ -14,7 +14,7 @@ std::vector<MovingBody<3>> read_bodies(const CaseNode& root, int dimension) {
   for (const CaseNode& node : root.list_or_empty("bodies")) {
     MovingBody<3> body;
     body.name = node.text_or("name", fmt::format("body_{}", bodies.size()));
-    require_column_name(node, "name", body.name);
+    require_column_word(node, "name", body.name);
     for (const MovingBody<3>& other : bodies)
       if (other.name == body.name) node.fail("name", fmt::format("'{}' is the name of two bodies", body.name));
     const auto low = node.numbers("low", "m", Range::any(), n), high = node.numbers("high", "m", Range::any(), n);

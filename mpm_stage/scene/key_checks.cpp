@@ -4,16 +4,14 @@
 
 #include <cmath>
 
+#include "common/plain_names.hpp"
+
 namespace tailrun::mpm {
 
-void require_column_name(const CaseNode& node, const std::string& key, const std::string& name) {
+void require_column_word(const CaseNode& node, const std::string& key, const std::string& name) {
   const char* allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
   if (!name.empty() && name.find_first_not_of(allowed) == std::string::npos) return;
-  std::string shown;  // on one line
-  for (const char c : name)
-    shown += static_cast<unsigned char>(c) < ' ' ? fmt::format("\\x{:02x}", static_cast<unsigned char>(c))
-                                                 : std::string(1, c);
-  node.fail(key, fmt::format("'{}' becomes part of a column's name: letters, digits, _ and - only", shown));
+  node.fail(key, fmt::format("{} becomes part of a column's name: letters, digits, _ and - only", shown_name(name)));
 }
 
 void refuse_with_other_choice(const CaseNode& node, const std::string& misplaced, const std::string& key,

@@ -7,8 +7,9 @@
 
 namespace tailrun::mpm {
 
-// A name that becomes part of a column's name in a CSV file: letters, digits, _ and -. Throws InputError at `key`.
-void require_column_name(const CaseNode& node, const std::string& key, const std::string& name);
+// A name that becomes part of a column's name in a CSV file: letters, digits, _ and - (narrower than
+// common/plain_names.hpp, since units follow behind an underscore). Throws InputError at `key`.
+void require_column_word(const CaseNode& node, const std::string& key, const std::string& name);
 
 // A key that belongs to one choice: an InputError when it is there although `key` of `node` is `found`.
 // `needs` are the choices that take it, for the message: "'flip'".

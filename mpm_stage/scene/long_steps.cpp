@@ -21,10 +21,8 @@ namespace {
 // Soil that bears no tension opens instead of swinging: asked of its law, with a cohesion of 1 Pa where it has any.
 bool bears_tension(const Material& m, const MaterialConstants& k) {
   if (!m.law->returned) return true;
-  const bool coheres =
-      m.cohesion > 0.0 || m.cohesion_from_particles || !m.cohesion_table.empty() || m.cohesion_ratio > 0.0;
   constexpr double trial = 1e6;  // Pa
-  return m.law->returned(k, coheres ? 1.0 : 0.0, {trial, trial, trial}).s1 > 0.0;
+  return m.law->returned(k, has_cohesion(m) ? 1.0 : 0.0, {trial, trial, trial}).s1 > 0.0;
 }
 
 }  // namespace
@@ -62,8 +60,7 @@ void warn_of_long_steps(const CaseNode& root, const Scene& scene) {
   }
   if (o.courant > longest)
     root.warn("time", fmt::format("courant is {}: steps longer than {:.2g} let single particles of '{}' between other "
-                                  "soil swing ever more, until they "
-                                  "tear the run apart",
+                                  "soil swing ever more, until they tear the run apart",
                                   o.courant, longest, swings));
 }
 

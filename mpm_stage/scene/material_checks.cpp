@@ -50,14 +50,12 @@ void check_fluid(const CaseNode& node, const MaterialSetting& setting) {
 void check_softening(const CaseNode& material, const Material& m, double cell_size) {
   const Softening& s = m.softening;
   if (!s.active) return;
-  const bool has_cohesion =
-      m.cohesion > 0.0 || m.cohesion_from_particles || !m.cohesion_table.empty() || m.cohesion_ratio > 0.0;
-  const bool cohesion_falls = has_cohesion && s.cohesion_ratio < 1.0;
+  const bool coheres = has_cohesion(m), cohesion_falls = coheres && s.cohesion_ratio < 1.0;
   const bool friction_falls = s.residual_friction >= 0.0 && s.residual_friction < m.friction_angle;
   if (!cohesion_falls && !friction_falls)
     material.warn(
         "softening",
-        fmt::format("nothing softens: {}cohesion_ratio is {:g}{}", has_cohesion ? "" : "the soil has no cohesion, ",
+        fmt::format("nothing softens: {}cohesion_ratio is {:g}{}", coheres ? "" : "the soil has no cohesion, ",
                     s.cohesion_ratio,
                     m.friction_angle > 0.0 ? " and no residual_friction_angle below friction_angle is given" : ""));
   const double length = s.reference_length;
@@ -77,6 +75,10 @@ void check_table(const CaseNode& node, const Material& m) {
 }
 
 }  // namespace
+
+bool has_cohesion(const Material& m) {
+  return m.cohesion > 0.0 || m.cohesion_from_particles || !m.cohesion_table.empty() || m.cohesion_ratio > 0.0;
+}
 
 void check_materials(const CaseNode& root, const Scene& scene) {
   const ParticleSet& set = scene.particles;

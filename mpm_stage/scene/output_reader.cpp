@@ -14,7 +14,7 @@ namespace {
 template <class Named>
 std::string read_name(const CaseNode& node, const std::vector<Named>& others, const char* what) {
   const std::string name = node.text("name");
-  require_column_name(node, "name", name);
+  require_column_word(node, "name", name);
   for (const Named& other : others)
     if (other.name == name) node.fail("name", fmt::format("there is a {} '{}' already", what, name));
   return name;

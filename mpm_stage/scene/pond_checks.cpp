@@ -3,23 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "mpm_stage/scene/scene_checks.hpp"
+#include "mpm_stage/scene/span.hpp"
 
 namespace tailrun::mpm {
 
 namespace {
-
-constexpr double endless = std::numeric_limits<double>::infinity();
-
-struct Span {
-  double low = endless, high = -endless;  // m
-  void add(double x) {
-    low = std::min(low, x);
-    high = std::max(high, x);
-  }
-};
 
 // Where there is soil or ground, along x, within the domain. Ground goes on beyond its ends, but nobody drew it there.
 Span scene_along_x(const Scene& scene) {

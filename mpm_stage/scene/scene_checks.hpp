@@ -20,6 +20,10 @@ void check_start(const CaseNode& root, const Scene& scene);
 // Entries of "materials": common/plausible_material.hpp, and keys that only mpm.json has (material_checks.cpp).
 void check_materials(const CaseNode& root, const Scene& scene);
 
+// Whether any strength is left to the material without pressure: a number, a table, a ratio, or what the particles
+// bring.
+bool has_cohesion(const Material& material);
+
 // Speeds and shares that end a run, put soil to sleep or switch off a guard (threshold_checks.cpp).
 void check_thresholds(const CaseNode& root, const Scene& scene);
 

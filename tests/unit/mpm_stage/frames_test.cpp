@@ -43,6 +43,15 @@ TEST_CASE("frames written in the background are all there after a wait, and a fa
   CHECK(read_particles(folder / frames.names().front()).time == 0.0);
   CHECK(std::filesystem::exists(folder / "runout.vtkhdf.series"));
 
+  FrameWriter small(folder, Provenance{}, tailrun::Precision::single);
+  ParticleSet set = two_particles(3.0);
+  set.volume[0] = 1.0 / 3.0;
+  small.write(set);
+  small.wait();
+  const double volume = read_particles(folder / small.last()).volume[0];
+  CHECK(volume != set.volume[0]);
+  CHECK(volume == doctest::Approx(set.volume[0]).epsilon(1e-7));
+
   std::filesystem::remove_all(folder);
   std::ofstream(folder) << "a file in the folder's place";
   frames.write(two_particles(3.0));
