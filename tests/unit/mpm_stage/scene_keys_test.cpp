@@ -81,10 +81,10 @@ TEST_CASE("keys of the scheme say which transfer they go with") {
 TEST_CASE("names that would break a table's header are refused") {
   for (const char* name : {"a,b", "a\\\"b", "a\\nb", ""}) {
     const std::string said = R"("name": ")" + std::string(name) + R"(")";
-    refused(R"({"output": {"points": [{)" + said + R"(, "position": [1, 1]}]}})", "/output/points/0/name: '");
-    refused(R"({"output": {"sections": [{)" + said + R"(, "at": 1}]}})", "/output/sections/0/name: '");
+    refused(R"({"output": {"points": [{)" + said + R"(, "position": [1, 1]}]}})", "/output/points/0/name: \"");
+    refused(R"({"output": {"sections": [{)" + said + R"(, "at": 1}]}})", "/output/sections/0/name: \"");
     refused(R"({"bodies": [{)" + said + R"(, "low": [9, 0], "high": [10, 2], "velocity": [0, 0]}]})",
-            "/bodies/0/name: '");
+            "/bodies/0/name: \"");
   }
   refused(R"({"output": {"points": [{"name": "a", "position": [1, 1]}, {"name": "a", "position": [2, 1]}]}})",
           "/output/points/1/name: there is a point 'a' already");
