@@ -41,15 +41,12 @@ struct BodyState {
   std::array<double, Dim> impulse{};  // N s (per metre in plane strain), of the material on the body since the start
 };
 
-// Sets the velocities of the nodes inside the box of `body`, moved by `state`, to `v`, and adds to the state's impulse.
-// `mass` has the nodes' masses in lane 0 (kg), `changed(node, dv)` is told of what was added to a node's velocity.
-// Returns the work done on the material, J.
-template <int Dim, class Changed>
-double push_nodes(const BlockGrid<Dim>& grid, const MovingBody<Dim>& body, const std::array<double, Dim>& v,
-                  const Vec4* mass, double mass_cutoff, Vec4* velocity, BodyState<Dim>& state, Changed changed) {
+// action(k) for the nodes inside the box of `body`, moved by `state`: numbers in arrays by active blocks.
+template <int Dim, class Action>
+void for_each_node_inside(const BlockGrid<Dim>& grid, const MovingBody<Dim>& body, const BodyState<Dim>& state,
+                          Action action) {
   constexpr int B = Block<Dim>::cells;
   const double h = grid.cell_size(), tolerance = 1e-9 * h;
-  double work = 0.0;
   for (std::size_t a = 0; a < grid.active(); ++a) {
     bool apart = false;
     std::array<double, Dim> corner;
@@ -64,20 +61,9 @@ double push_nodes(const BlockGrid<Dim>& grid, const MovingBody<Dim>& body, const
         const double x = corner[d] + k % B * h;
         outside = outside || x < body.low[d] - tolerance || x > body.high[d] + tolerance;
       }
-      const std::size_t k = a * Block<Dim>::nodes + static_cast<std::size_t>(n);
-      const double m = mass[k][0];
-      if (outside || m <= mass_cutoff) continue;
-      std::array<double, Dim> dv;
-      for (int d = 0; d < Dim; ++d) {
-        dv[d] = v[d] - velocity[k][d];
-        velocity[k][d] = v[d];
-        state.impulse[d] -= m * dv[d];
-        work += m * dv[d] * v[d];
-      }
-      changed(k, dv);
+      if (!outside) action(a * Block<Dim>::nodes + static_cast<std::size_t>(n));
     }
   }
-  return work;
 }
 
 }  // namespace tailrun::mpm

@@ -18,13 +18,9 @@ double losses(const WorkDone& w) {
 }
 
 // What may help, by where the energy came from. A shorter step brings down what the integration in time makes, and
-// nothing else. Friction of ground that reaches into a body (nodes up to two cells under the ground grip, too) is
-// booked with the sliding that the body then stops.
-std::string advice(const LedgerRow& now, bool bodies) {
+// nothing else.
+std::string advice(const LedgerRow& now) {
   if (!std::isfinite(now.total())) return "a shorter time step (time/courant) may help";
-  if (bodies && now.work.friction > 0.0)
-    return "where bodies reach to ground that soil slides on, friction is booked for a sliding that they stop: let "
-           "them end two cells off the ground; if they do, a shorter time step (time/courant) may help";
   if (std::isnan(now.work.transfer))
     return "if a shorter time step (time/courant) does not help, another scheme/transfer may, or a higher "
            "scheme/fmpm_order";
@@ -82,7 +78,7 @@ void Ledger<Dim>::check(const LedgerRow& now, double scale, const Solver<Dim>& s
   throw ComputationError(fmt::format(
       "{}, the most of all per mass: energy has grown without work that explains it, by {:.4g} J of {:.4g} J turned "
       "over (limit {} of it); {}",
-      solver.most_energetic(), grown, scale, limit, advice(now, !solver.bodies().empty())));
+      solver.most_energetic(), grown, scale, limit, advice(now)));
 }
 
 template <int Dim>

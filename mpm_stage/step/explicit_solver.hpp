@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -345,6 +346,7 @@ class ExplicitSolver final : public Solver<Dim> {
   void filter_velocity(double dt);
   void take_increment(int f, std::size_t a);
   void share_increments();
+  void share_increments_at(std::size_t a, int n, unsigned there);
   void find_held(int f, std::size_t a, double dt);
   void keep_contact(int f, std::size_t a);
   void gather(double dt, StepReport& report);
@@ -361,7 +363,10 @@ class ExplicitSolver final : public Solver<Dim> {
   void rub_block(int f, std::size_t a, const Drive& drive);
   void sum_kinetic_after();
   void book_damping();
-  void move_bodies(double dt);
+  void find_nodes_in_bodies(double dt);
+  bool in_body(std::size_t a, int n) const;
+  void push_nodes(const Drive& drive);
+  void push_node(std::size_t k, std::size_t b, const Drive& drive);
   std::string description(std::size_t p) const;
   [[noreturn]] void fail(std::size_t begin, std::size_t end, const std::string& what) const;
 
@@ -375,6 +380,8 @@ class ExplicitSolver final : public Solver<Dim> {
   Walls<Dim> walls_;
   std::vector<BodyState<Dim>> bodies_;
   std::vector<std::array<double, Dim>> body_velocity_;  // m/s, in this step
+  static constexpr std::uint16_t no_body = 0xffff;
+  std::vector<std::uint16_t> body_of_node_;  // of the nodes of active blocks, in this step; only with bodies
   WallNodes<Dim> wall_nodes_;
   ContactNodes<Dim> ground_;
   MirrorWalls<Dim> mirrors_;
@@ -418,6 +425,7 @@ class ExplicitSolver final : public Solver<Dim> {
   std::vector<NodeGrip> grip_;  // per active block
   // FMPM: the latest term of the velocity and the mass matrix times it, per active block; what contact holds.
   AlignedVector<Vec4> term_, products_;
+  AlignedVector<Vec4> contact_velocity_;  // m/s, before the filter; only with several fields
   struct HeldNode {
     std::size_t node;
     HeldDirections<Dim> held;
@@ -445,6 +453,7 @@ class ExplicitSolver final : public Solver<Dim> {
 
 }  // namespace tailrun::mpm
 
+#include "mpm_stage/step/body_phase.hpp"
 #include "mpm_stage/step/explicit_solver_contact.hpp"
 #include "mpm_stage/step/explicit_solver_phases.hpp"
 #include "mpm_stage/step/explicit_solver_sleep.hpp"

@@ -1,5 +1,5 @@
-// What ground and moving bodies do to the nodes after their approach has been stopped, and the nodes' kinetic energy
-// after all of it; included by explicit_solver.hpp.
+// What the ground's friction does to the nodes after their approach has been stopped, and the nodes' kinetic energy
+// after all contact; included by explicit_solver.hpp.
 #pragma once
 
 #include "mpm_stage/step/explicit_solver.hpp"
@@ -84,28 +84,6 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::book_damping() {
       for (std::size_t k = node_of(f, a); k < node_of(f, a) + block_nodes; ++k)
         for (int d = 0; d < Dim; ++d) lost += damped_[k][d] * (velocity_[k][d] - 0.5 * change_of(k, d));
     grid_sums_[a].damping = lost;
-  }
-}
-
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::move_bodies(double dt) {
-  nodes_in_bodies_.clear();
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const std::array<double, Dim>& v = body_velocity_[b] = walls_.bodies[b].velocity_at(time_ + 0.5 * dt);
-    for (int f = 0; f < fields_.count(); ++f) {
-      const std::size_t first = node_of(f, 0);
-      const auto changed = [this, b, first](std::size_t node, const std::array<double, Dim>& dv) {
-        [[maybe_unused]] const std::size_t k = first + node;
-        if constexpr (Split) {
-          add_change(k, dv);
-          for (int d = 0; d < Dim; ++d) work_.impact += 0.5 * sums_[k][0] * dv[d] * change_of(k, d);
-        }
-        if constexpr (Transfer == TransferName::fmpm) nodes_in_bodies_.push_back({k, b});
-      };
-      work_.external += push_nodes<Dim>(grid_, walls_.bodies[b], v, sums_.data() + first, mass_cutoff_,
-                                        velocity_.data() + first, bodies_[b], changed);
-    }
-    for (int d = 0; d < Dim; ++d) bodies_[b].displacement[d] += dt * v[d];
   }
 }
 

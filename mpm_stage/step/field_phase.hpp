@@ -148,7 +148,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::part_fields(std::size_t a, dou
     else if (meeting[n] == not_met)
       meeting[n] = met;
     if (sides) join_sides(a, n, node, sums);
-    if (meeting[n] != surface_known) continue;
+    if (meeting[n] != surface_known || in_body(a, n)) continue;
     NodeBodies bodies = bodies_at(a, n, meeting_at(a, n, there), node);
     auto pairs = contact_pairs(a, n, bodies, dt);
     if (contact && contact[n].count > 0) {

@@ -12,15 +12,16 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::update_grid(double dt, const s
   const auto since = Clock::now();
   const Drive drive = drive_of(dt, body, inertial);
   if (needs_all_sums()) complete_sums();
+  if (!bodies_.empty()) find_nodes_in_bodies(dt);
   if (fields_.several() && surface_age_.due()) {
     gather_interfaces();
     smooth_surfaces();
   }
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t a = 0; a < grid_.active(); ++a) grid_sums_[a] = still(a) ? rest_block(a) : move_block(a, drive);
+  if (!bodies_.empty()) push_nodes(drive);
   if (fields_.several()) rub_fields(dt);
   if (ground_.any()) rub_ground(drive);
-  if (!bodies_.empty()) move_bodies(dt);
   continue_velocities();
   if constexpr (Split) {
     if (needs_all_sums()) sum_kinetic_after();
@@ -200,8 +201,11 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::touch_boundaries(int f, std::s
   for (int n = 0; n < block_nodes; ++n) {
     const double m = node.sum[n][0];
     const std::size_t k = node_of(f, a) + static_cast<std::size_t>(n);
-    if (m <= mass_cutoff_) {
+    const bool held = in_body(a, n);
+    if (m <= mass_cutoff_ || held) {
       if (contact) smoothed_grip_[k] = 0.0;
+      if (held && drive.shaken)
+        for (int d = 0; d < Dim; ++d) sums.external += dt * m * drive.inertial[d] * velocity_[k][d];
       continue;
     }
     std::array<double, Dim> v = velocity_at(k), before{};

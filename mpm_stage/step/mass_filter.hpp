@@ -5,7 +5,7 @@
 //
 // Nodes that walls, ground or bodies hold: v(1) is what contact has made of it, and each further term loses its part
 // along the held directions (held_directions.hpp), so the series inverts the mass matrix of the free directions.
-// Where velocity fields meet they share each term: what contact between them has settled must stay so.
+// Where velocity fields meet they share of each term what contact between them has settled: it must stay so.
 // Mirrors and continued surface nodes treat M v like any other momentum.
 //
 // The time step: with mu in [0, 1] an eigenvalue of m^-1 M, the filter multiplies accelerations by
@@ -40,6 +40,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::filter_velocity(double dt) {
   };
   std::fill(grid_sums_.begin(), grid_sums_.end(), GridSums<Dim>{});
   std::copy(velocity_.begin(), velocity_.end(), term_.begin());
+  if (fields_.several()) contact_velocity_.assign(velocity_.begin(), velocity_.end());
   for_each_block([&](int f, std::size_t a) { find_held(f, a, dt); });
   for (int l = 1; l < options_.fmpm_order; ++l) {
 #pragma omp parallel for schedule(dynamic, 4)
@@ -86,27 +87,65 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::filter_velocity(double dt) {
   add_time(seconds_.grid, since);
 }
 
-// Where fields meet they get the term of both together: momentum is kept, and what contact has made of the difference
-// of their velocities, too.
+// What contact between fields holds stays held: fields that contact has left with one velocity at a node get the term of
+// all of them together, and two that touch and slide that part of it that lies across their surface. Momentum is kept.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::share_increments() {
 #pragma omp parallel for schedule(dynamic, 4)
   for (std::size_t a = 0; a < grid_.active(); ++a) {
     if (!fields_.shared(a)) continue;
     for (int n = 0; n < block_nodes; ++n) {
-      Vec4 momentum = {};
-      double mass = 0.0;
-      for (int f = 0; f < fields_.count(); ++f) {
-        if (!fields_.present(f, a)) continue;
-        const std::size_t k = node_of(f, a) + static_cast<std::size_t>(n);
-        momentum += term_[k] * splat(sums_[k][0]);
-        mass += sums_[k][0];
-      }
-      if (mass <= mass_cutoff_) continue;
+      unsigned there = 0;
       for (int f = 0; f < fields_.count(); ++f)
         if (fields_.present(f, a) && sums_[node_of(f, a) + static_cast<std::size_t>(n)][0] > mass_cutoff_)
-          term_[node_of(f, a) + static_cast<std::size_t>(n)] = momentum * splat(1.0 / mass);
+          there |= 1U << f;
+      if ((there & (there - 1)) != 0) share_increments_at(a, n, there);
     }
+  }
+}
+
+template <int Dim, class Shape, bool Split, TransferName Transfer>
+void ExplicitSolver<Dim, Shape, Split, Transfer>::share_increments_at(std::size_t a, int n, unsigned there) {
+  const double slack = 1e-12 * fastest_wave_;
+  const auto node = [&](int f) { return node_of(f, a) + static_cast<std::size_t>(n); };
+  // Fields by the velocity that contact has left them with.
+  unsigned left = there;
+  while (left != 0) {
+    const int first = std::countr_zero(left);
+    unsigned alike = 0;
+    Vec4 momentum = {};
+    double mass = 0.0;
+    for (int f = first; f < fields_.count(); ++f) {
+      if (!(left >> f & 1U)) continue;
+      double apart = 0.0;
+      for (int d = 0; d < Dim; ++d)
+        apart = std::max(apart, std::fabs(contact_velocity_[node(f)][d] - contact_velocity_[node(first)][d]));
+      if (apart > slack) continue;
+      alike |= 1U << f;
+      momentum += term_[node(f)] * splat(sums_[node(f)][0]);
+      mass += sums_[node(f)][0];
+    }
+    for (int f = first; f < fields_.count(); ++f)
+      if (alike >> f & 1U) term_[node(f)] = momentum * splat(1.0 / mass);
+    left &= ~alike;
+  }
+  for (int pair = 0; pair < pairs_of(fields_.count()); ++pair) {
+    const std::size_t first = grip_of(pair, a);
+    if (!gripping_[first / block_nodes]) continue;
+    const FieldGrip<Dim>& grip = field_grip_[first + static_cast<std::size_t>(n)];
+    if (!grip.any()) continue;
+    const std::size_t k[2] = {node(std::countr_zero(grip.fields[0])), node(std::countr_zero(grip.fields[1]))};
+    double across = 0.0, parting = 0.0;
+    for (int d = 0; d < Dim; ++d) {
+      across += (term_[k[1]][d] - term_[k[0]][d]) * grip.normal[d];
+      parting += (contact_velocity_[k[1]][d] - contact_velocity_[k[0]][d]) * grip.normal[d];
+    }
+    if (std::fabs(parting) > slack) continue;
+    for (int side = 0; side < 2; ++side)
+      for (int f = 0; f < fields_.count(); ++f)
+        for (int d = 0; d < Dim && (grip.fields[side] >> f & 1U); ++d)
+          term_[node(f)][d] +=
+              (side == 0 ? across : -across) * grip.reduced_mass() / grip.mass[side] * grip.normal[d];
   }
 }
 
@@ -142,7 +181,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::find_held(int f, std::size_t a
   if (contact) gather_tiles<Dim, Shape>(fields_.around(f, a), gap_tiles_.data() + fields_.tile(f, 0) * tile_nodes, gap);
   for (int n = 0; n < block_nodes; ++n) {
     const std::size_t k = node_of(f, a) + static_cast<std::size_t>(n);
-    if (sums_[k][0] <= mass_cutoff_) continue;
+    if (sums_[k][0] <= mass_cutoff_ || in_body(a, n)) continue;
     std::array<double, Dim> v;
     for (int d = 0; d < Dim; ++d) v[d] = velocity_[k][d];
     HeldNode node{k, {}, v, nullptr, 0.0};

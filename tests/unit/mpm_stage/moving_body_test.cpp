@@ -97,3 +97,38 @@ TEST_CASE("local damping is booked for the body alone, not for its mirror image"
   CHECK(s->work().damping > 0.0);
   CHECK(s->work().damping == doctest::Approx(released - left).epsilon(0.03));
 }
+
+TEST_CASE("a blade that pushes a block along the ground feels the friction of what presses on that") {
+  constexpr double friction = 0.4, speed = 2.0, spacing = 0.25, density = 2000.0, gravity = 9.81;
+  constexpr std::size_t columns = 24, rows = 8;
+  Particles<2> P;
+  P.resize(columns * rows, true, false);
+  for (std::size_t p = 0; p < P.count(); ++p) {
+    P.position[0][p] = (static_cast<double>(p % columns) + 0.5) * spacing;
+    P.position[1][p] = (static_cast<double>(p / columns) + 0.5) * spacing;
+    P.velocity[0][p] = speed;
+    P.volume[p] = spacing * spacing;
+    P.mass[p] = density * P.volume[p];
+    P.stress[1][p] = -density * gravity * (spacing * static_cast<double>(rows) - P.position[1][p]);
+    P.stress[0][p] = P.stress[2][p] = 0.4 * P.stress[1][p];
+    P.identity[p] = static_cast<std::int32_t>(p);
+  }
+  Material block;
+  block.law = &law_named("linear_elastic");
+  block.youngs_modulus = 1e7;
+  block.poisson_ratio = 0.3;
+  Walls<2> walls;
+  walls.bodies.push_back({"blade", {-2.0, -1.0}, {0.0, 3.0}, {0.0}, {{speed, 0.0}}});
+  Terrain ground;
+  ground.add_line({{{-20.0, 0.0}}, {{80.0, 0.0}}}, {friction}, false);
+  SolverOptions o;
+  o.transfer = TransferName::aflip;
+  auto s = make_solver<2>(o, 0.5, {0, 0}, std::move(P), {block}, ground, walls);
+  s->start(1e30);
+  for (double time = 0.0; time < 6.0;) time += s->step({0, -gravity}, {0, 0}, 1e30).dt;
+  const auto ground_gave = s->boundary_impulse(), blade = s->bodies()[0].impulse;
+  // Rough, the blade carries some of the weight or adds to it.
+  CHECK(ground_gave[1] - blade[1] == doctest::Approx(density * gravity * 12.0 * 6.0).epsilon(0.01));
+  CHECK(-ground_gave[0] == doctest::Approx(friction * ground_gave[1]).epsilon(0.01));
+  CHECK(-blade[0] == doctest::Approx(friction * ground_gave[1]).epsilon(0.01));
+}
