@@ -87,8 +87,9 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::filter_velocity(double dt) {
   add_time(seconds_.grid, since);
 }
 
-// What contact between fields holds stays held: fields that contact has left with one velocity at a node get the term of
-// all of them together, and two that touch and slide that part of it that lies across their surface. Momentum is kept.
+// What contact between fields holds stays held: fields that contact has left with one velocity at a node get the term
+// of all of them together, and two that touch and slide that part of it that lies across their surface. Momentum is
+// kept.
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::share_increments() {
 #pragma omp parallel for schedule(dynamic, 4)
@@ -144,8 +145,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::share_increments_at(std::size_
     for (int side = 0; side < 2; ++side)
       for (int f = 0; f < fields_.count(); ++f)
         for (int d = 0; d < Dim && (grip.fields[side] >> f & 1U); ++d)
-          term_[node(f)][d] +=
-              (side == 0 ? across : -across) * grip.reduced_mass() / grip.mass[side] * grip.normal[d];
+          term_[node(f)][d] += (side == 0 ? across : -across) * grip.reduced_mass() / grip.mass[side] * grip.normal[d];
   }
 }
 
