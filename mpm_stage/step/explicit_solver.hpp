@@ -55,65 +55,9 @@ class ExplicitSolver final : public Solver<Dim> {
  public:
   ExplicitSolver(const SolverOptions& options, double cell_size, std::array<double, Dim> origin,
                  Particles<Dim> particles, const std::vector<Material>& materials, const Terrain& terrain,
-                 const Walls<Dim>& walls)
-      : options_(options),
-        h_(cell_size),
-        h1_(1.0 / cell_size),
-        grid_(cell_size, origin, Shape::shift),
-        P_(std::move(particles)),
-        materials_(materials),
-        walls_(walls),
-        bodies_(walls.bodies.size()),
-        body_velocity_(walls.bodies.size()),
-        ground_(terrain, options.contact_reach * cell_size),
-        extension_(options.surface_share),
-        sleep_(options.sleep),
-        water_(options.ponds),
-        filling_(0.0) {
-    double mass = 0.0;
-    for (const double m : P_.mass) mass += m;
-    mass_cutoff_ = (options.mass_cutoff < 0.0 ? Shape::mass_cutoff : options.mass_cutoff) * mass /
-                   static_cast<double>(std::max<std::size_t>(1, P_.count()));
-    averaging_ = false;
-    for (const auto& m : materials_) {
-      constants_.push_back(constants_of(m, cell_size));
-      constants_.back().averaged = constants_.back().averaged && options.volumetric_average;
-      averaging_ = averaging_ || constants_.back().averaged;
-    }
-    if (averaging_) filling_ = PatchFilling<Dim>(options.crowding_relief);
-    if constexpr (Dim == 2 && std::is_same_v<Shape, QuadraticShape>)
-      if (averaging_ && options.courant > longest_courant<Shape>(Dim)) sparse_.cell = h_ * h_;
-    limit_volumes();
-    if (walls.bounded && walls.leaving == LeavingParticles::wall) {
-      std::int32_t most = 0;
-      for (const std::int32_t identity : P_.identity) most = std::max(most, identity);
-      held_.assign(static_cast<std::size_t>(most) + 1, 0);
-    }
-    for (int d = 0; d < Dim; ++d)
-      for (int s = 0; s < 2; ++s) {
-        auto& side = wall_nodes_.side[d][s];
-        side.kind = walls.bounded ? walls.side[d][s].kind : WallKind::open;
-        side.friction = walls.side[d][s].friction;
-        side.node = static_cast<int>(std::lround(((s == 0 ? walls.low[d] : walls.high[d]) - origin[d]) * h1_));
-        wall_nodes_.any = wall_nodes_.any || side.kind != WallKind::open;
-      }
-    if (!Split) work_.transfer = work_.impact = std::nan("");
-  }
+                 const Walls<Dim>& walls);
 
-  void start(double limit) override {
-    water_.set_time(0.0);
-    sort();
-    for (std::size_t p = 0; p < P_.count(); ++p) {
-      fastest_wave_ = std::max(fastest_wave_, wave_speed_[P_.material[p]] + std::sqrt(speed_squared(p)));
-      kinetic_ += 0.5 * P_.mass[p] * speed_squared(p);
-    }
-    for (const auto& column : P_.affine)
-      starts_with_spin_ =
-          starts_with_spin_ || std::any_of(column.begin(), column.end(), [](double c) { return c != 0.0; });
-    next_dt_ = longest_step(limit);
-    particles_to_grid();
-  }
-
+  void start(double limit) override;
   void resume(Particles<Dim> particles, const SolverState<Dim>& s) override;
   SolverState<Dim> state() const override;
   bool resumable() const override { return !fields_.several() || surface_age_.due(); }
@@ -161,22 +105,11 @@ class ExplicitSolver final : public Solver<Dim> {
   }
   long sorts() const override { return sorts_; }
 
-  double elastic_energy() const override {
-    double energy = 0.0;
-    for (std::size_t b = 0; b < grid_.occupied(); ++b)
-      for (const Run& run : grid_.runs(b))
-        energy += mpm::elastic_energy(constants_[run.material], P_, run.begin, run.end);
-    return energy;
-  }
-
+  double elastic_energy() const override;
   std::string most_energetic() const override;
   double unbalanced_force_ratio(const std::array<double, Dim>& body) const override;
 
-  std::size_t grid_bytes() const override {
-    return grid_.bytes() + (tiles_.capacity() + velocity_.capacity() + change_.capacity()) * sizeof(Vec4) +
-           beside_.capacity() * sizeof(SplitNode<Dim>) + (term_.capacity() + products_.capacity()) * sizeof(Vec4) +
-           averaged_tiles_.capacity() * sizeof(PatchSum) + averaged_.capacity() * sizeof(PatchFit) + filling_.bytes();
-  }
+  std::size_t grid_bytes() const override;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -455,9 +388,11 @@ class ExplicitSolver final : public Solver<Dim> {
 
 #include "mpm_stage/step/body_phase.hpp"
 #include "mpm_stage/step/explicit_solver_contact.hpp"
+#include "mpm_stage/step/explicit_solver_layout.hpp"
 #include "mpm_stage/step/explicit_solver_phases.hpp"
+#include "mpm_stage/step/explicit_solver_report.hpp"
 #include "mpm_stage/step/explicit_solver_sleep.hpp"
-#include "mpm_stage/step/explicit_solver_upkeep.hpp"
+#include "mpm_stage/step/explicit_solver_start.hpp"
 #include "mpm_stage/step/field_friction_phase.hpp"
 #include "mpm_stage/step/field_phase.hpp"
 #include "mpm_stage/step/field_surfaces.hpp"

@@ -1,21 +1,10 @@
-// Upkeep of the explicit solver: the layout after a sort, its state for checkpoints, and what it says of itself;
-// included by explicit_solver.hpp.
+// Memory and neighbours of the blocks after a sort of the particles, and what nodes keep over it; included by
+// explicit_solver.hpp.
 #pragma once
 
 #include "mpm_stage/step/explicit_solver.hpp"
 
 namespace tailrun::mpm {
-
-// The grains' volume is what counts: at most a quarter more than that of the material's loosest particle at the start,
-// about what lies between a loose sand's void ratio and the loosest possible (0.8 and 1.2).
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::limit_volumes() {
-  std::vector<double> loosest(constants_.size(), 0.0);
-  for (std::size_t p = 0; p < P_.count(); ++p)
-    loosest[P_.material[p]] = std::max(loosest[P_.material[p]], P_.volume[p] / P_.mass[p]);
-  for (std::size_t m = 0; m < constants_.size(); ++m)
-    if (loosest[m] > 0.0) constants_[m].largest_specific_volume = 1.25 * loosest[m];
-}
 
 template <int Dim, class Shape, bool Split, TransferName Transfer>
 void ExplicitSolver<Dim, Shape, Split, Transfer>::sort() {
@@ -256,151 +245,6 @@ std::vector<SurfaceRole> ExplicitSolver<Dim, Shape, Split, Transfer>::surface_ro
     }
   }
   return role;
-}
-
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-SolverState<Dim> ExplicitSolver<Dim, Shape, Split, Transfer>::state() const {
-  SolverState<Dim> s;
-  s.blocks = grid_.occupied_indices();
-  s.first = grid_.first_particles();
-  s.wave_speed = wave_speed_;
-  s.next_dt = next_dt_;
-  s.viscous_limit = viscous_limit_;
-  s.drift = drift_;
-  s.fastest_wave = fastest_wave_;
-  s.kinetic = kinetic_;
-  s.sorts = sorts_;
-  s.work = work_;
-  s.seconds = seconds_;
-  s.impulse = impulse_;
-  s.time = time_;
-  s.bodies = bodies_;
-  s.grip = grip_memory();
-  s.removed = removed_;
-  s.held = held();
-  s.sleep_clocks = sleep_.clocks();
-  for (const std::uint8_t meeting : meeting_) s.meeting.push_back(meeting == not_met ? not_met : met);
-  s.ponds = water_.states();
-  s.pond_shares = water_.shares();
-  return s;
-}
-
-// The nodes' sums are not kept: P2G makes the same ones again.
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::resume(Particles<Dim> particles, const SolverState<Dim>& s) {
-  P_ = std::move(particles);
-  grid_.restore(s.blocks, s.first, P_, options_.fields);
-  lay_out();
-  if (sleep_.active()) sleep_.restore(s.sleep_clocks);
-  wave_speed_ = s.wave_speed;
-  next_dt_ = s.next_dt;
-  viscous_limit_ = s.viscous_limit;
-  drift_ = s.drift;
-  fastest_wave_ = s.fastest_wave;
-  kinetic_ = s.kinetic;
-  sorts_ = s.sorts;
-  work_ = s.work;
-  seconds_ = s.seconds;
-  impulse_ = s.impulse;
-  time_ = s.time;
-  bodies_ = s.bodies;
-  remember_grip(s.grip);
-  meeting_.assign(s.meeting.begin(), s.meeting.end());
-  removed_ = s.removed;
-  for (const std::int32_t k : s.held) held_[static_cast<std::size_t>(k)] = 1;
-  if (water_.any()) {
-    water_.restore(grid_, s.pond_shares, s.ponds);
-    water_levels_ = water_.levels();
-    water_potential_ = water_potential(water_levels_);
-  }
-  particles_to_grid();
-}
-
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-double ExplicitSolver<Dim, Shape, Split, Transfer>::unbalanced_force_ratio(const std::array<double, Dim>& body) const {
-  AlignedVector<Vec4> tiles(grid_.occupied() * tile_nodes, Vec4{});
-  AlignedVector<SplitNode<Dim>> beside(tiles.size(), SplitNode<Dim>{});
-  for (std::size_t b = 0; b < grid_.occupied(); ++b) {
-    const std::size_t begin = grid_.first_particle(b), end = grid_.last_particle(b);
-    Vec4* m = tiles.data() + b * tile_nodes;
-    SplitNode<Dim>* f = beside.data() + b * tile_nodes;
-    if (P_.pore_pressure.empty())
-      mpm::particles_to_grid<Shape, true, false>(0.0, h1_, corner(b), P_, begin, end, m, f);
-    else
-      mpm::particles_to_grid<Shape, true, true>(0.0, h1_, corner(b), P_, begin, end, m, f);
-    if (water_.any()) water_.template scatter<Shape, true>(grid_, b, 0.0, corner(b), P_, begin, end, m, f);
-  }
-  double unbalanced = 0.0, weight = 0.0;
-  for (std::size_t a = 0; a < grid_.active(); ++a) {
-    Vec4 m[block_nodes], f[block_nodes];
-    gather_sums<Dim, Shape, true>(grid_.tiles_around(a), tiles.data(), beside.data(), m, f);
-    const NodeContact* contact = ground_.of_block(a);
-    for (int n = 0; n < block_nodes; ++n) {
-      // What the ground bears counts for nothing, nor do nodes whose functions reach into it: there is its share in
-      // theirs.
-      if (m[n][0] <= mass_cutoff_ || (contact && (contact[n].count > 0 || contact[n].beside))) continue;
-      bool held = false;
-      const std::array<int, Dim> node = grid_.node_index(a, n);
-      for (int d = 0; d < Dim; ++d)
-        for (int s = 0; s < 2; ++s) {
-          const auto& side = wall_nodes_.side[d][s];
-          held =
-              held || (side.kind != WallKind::open && (s == 0 ? node[d] <= side.node + 1 : node[d] >= side.node - 1));
-        }
-      if (held) continue;
-      for (int d = 0; d < Dim; ++d) {
-        const double g = m[n][0] * body[d], r = f[n][1 + d] + g;
-        unbalanced += r * r;
-        weight += g * g;
-      }
-    }
-  }
-  return weight > 0.0 ? std::sqrt(unbalanced / weight) : 0.0;
-}
-
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-void ExplicitSolver<Dim, Shape, Split, Transfer>::fail(std::size_t begin, std::size_t end,
-                                                       const std::string& what) const {
-  // Names the particle that is not finite, else the fastest of the block.
-  std::size_t worst = begin;
-  double most = -1.0;
-  for (std::size_t p = begin; p < end; ++p) {
-    const double s = speed_squared(p);
-    if (!std::isfinite(s)) {
-      worst = p;
-      break;
-    }
-    if (s > most) {
-      most = s;
-      worst = p;
-    }
-  }
-  throw ComputationError(description(worst) + ", " + what);
-}
-
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-std::string ExplicitSolver<Dim, Shape, Split, Transfer>::description(std::size_t p) const {
-  std::string place;
-  for (int d = 0; d < Dim; ++d) place += fmt::format("{}{:.6g}", d ? ", " : "", P_.position[d][p]);
-  return fmt::format("particle {} of material '{}' at ({}) m, speed {:.4g} m/s", P_.identity[p],
-                     materials_[P_.material[p]].name, place, std::sqrt(speed_squared(p)));
-}
-
-template <int Dim, class Shape, bool Split, TransferName Transfer>
-std::string ExplicitSolver<Dim, Shape, Split, Transfer>::most_energetic() const {
-  std::size_t worst = 0;
-  double most = -1.0, kinetic = 0.0, elastic = 0.0;
-  for (std::size_t p = 0; p < P_.count() && std::isfinite(most); ++p) {
-    const double k = 0.5 * P_.mass[p] * speed_squared(p);
-    const double e = mpm::elastic_energy(constants_[P_.material[p]], P_, p, p + 1);
-    if ((k + e) / P_.mass[p] <= most) continue;
-    worst = p;
-    most = (k + e) / P_.mass[p];
-    kinetic = k;
-    elastic = e;
-  }
-  return fmt::format("{}, has a kinetic energy of {:.4g} J and an elastic one of {:.4g} J", description(worst), kinetic,
-                     elastic);
 }
 
 }  // namespace tailrun::mpm
