@@ -120,7 +120,8 @@ def draw(table, folder):
     for axis, headline in zip(axes.flat, headlines):
         panel(axis, tables, headline, curves["axis"])
     handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=min(len(labels), 4), fontsize=9)
+    if labels:  # one line at one size has no name
+        figure.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncol=min(len(labels), 4), fontsize=9)
     several = any(count > 1 for own in tables.values() for line in lines(own) for count in line.members)
     figure.suptitle("mean and standard deviation over runs that differ in nothing physical; dots: the runs" if several else "one run each", fontsize=9)
     style.save(figure, Path(folder) / "curves.png")

@@ -78,4 +78,10 @@ with tempfile.TemporaryDirectory() as name:
     assert (clone.case / "mpm.json").read_text() != text
     clone.make("sweep-files", "-j2", status=2)
     assert list(curve_figures.sizes(members_table.load(folder), folder)) == ["default"]
+
+    # A single line has no name, and its picture no legend.
+    clone.sweep_file({**GRID, "parameters": {name: GRID["parameters"][name] for name in ("end", "factor")}})
+    (folder / "curves.png").unlink()
+    result, ran = clone.make("sweep-files", "-j2", status=2)
+    assert not [line for line in ran if "mpm_stage" in line] and (folder / "curves.png").stat().st_size > 5000, result.stdout
 print("curves are those of the members")
