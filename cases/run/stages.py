@@ -157,16 +157,17 @@ class Chain:
 
     def program_key(self, stage):
         """SHA-256 of the program that computes; of all scripts for pictures, which share modules."""
-        if stage.program not in self._programs:
-            everything = Path(self.bin) / "mpm_stage_all"
-            if stage.program == "mpm_stage" and asks_for_other_solver(self.content("mpm")) and everything.exists():
-                self._programs[stage.program] = sha256(everything)
-            elif stage.program.endswith(".py"):
+        program = stage.program
+        if program == "mpm_stage" and asks_for_other_solver(self.content("mpm")) and (Path(self.bin) / "mpm_stage_all").exists():
+            program = "mpm_stage_all"
+        # By the program itself: members of a sweep share the sums, and may ask for another solver each.
+        if program not in self._programs:
+            if program.endswith(".py"):
                 own = {path.name: sha256(path) for path in sorted(PLOT.glob("*.py"))}
-                self._programs[stage.program] = hashlib.sha256(json.dumps(own).encode()).hexdigest()
+                self._programs[program] = hashlib.sha256(json.dumps(own).encode()).hexdigest()
             else:
-                self._programs[stage.program] = sha256(Path(self.bin) / stage.program)
-        return self._programs[stage.program]
+                self._programs[program] = sha256(Path(self.bin) / program)
+        return self._programs[program]
 
     def record(self, name):
         """The stage's input with its key."""

@@ -68,9 +68,10 @@ class Clone:
             shutil.copytree(self.source / "cases" / folder, self.root / "cases" / folder, ignore=shutil.ignore_patterns("__pycache__"))
         shutil.copytree(self.source / "cases" / "template", self.root / "cases" / "dam")
         (self.root / "bin").mkdir()
-        for program in ("fem_stage", "transfer_tool", "mpm_stage"):
+        # No two have the same bytes, as no two real ones have: what mpm_stage hands on to mpm_stage_all is of that one's key.
+        for program in ("fem_stage", "transfer_tool", "mpm_stage", "mpm_stage_all"):
             path = self.root / "bin" / program
-            path.write_text(PROGRAM.format(python=sys.executable, root=self.root, fails_above=fails_above))
+            path.write_text(PROGRAM.format(python=sys.executable, root=self.root, fails_above=fails_above) + f"# {program}\n")
             path.chmod(0o755)
         self.case, self.out, self.log = self.root / "cases" / "dam", self.root / "out" / "dam", self.root / "log"
         self.environment = {key: value for key, value in os.environ.items() if not key.startswith(("MAKE", "MFLAGS"))}
