@@ -31,9 +31,10 @@ void warn_of_doubled_loads(const CaseNode& root, const std::vector<LoadOptions>&
       if (!equal(loads[i], loads[j], duration)) continue;
       const std::string place =
           loads[i].place.line.empty() ? std::string("there") : fmt::format("on line '{}'", loads[i].place.line);
-      nodes[i].warn("", fmt::format("is the same as {}: both act, so that the load {} is doubled; if it is meant, give "
-                                    "one of twice the size",
-                                    nodes[j].pointer(), place));
+      root.warn(fmt::format("loads/{}", i),
+                fmt::format("is the same as {}: both act, so that the load {} is doubled; if it is meant, give "
+                            "one of twice the size",
+                            nodes[j].pointer(), place));
       break;
     }
 }
