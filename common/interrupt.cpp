@@ -1,6 +1,10 @@
 #include "common/interrupt.hpp"
 
+#include <fmt/core.h>
+
 #include <csignal>
+
+#include "common/error.hpp"
 
 namespace tailrun {
 
@@ -26,6 +30,11 @@ void note_signals() {
 
 std::string noted_signal() {
   return noted == SIGINT ? "SIGINT" : noted == SIGTERM ? "SIGTERM" : "";
+}
+
+void stop_if_told(const std::string& next) {
+  if (const std::string signal = noted_signal(); !signal.empty())
+    throw InterruptedError(fmt::format("stopped by {} before it went on to {}; nothing was written", signal, next));
 }
 
 }  // namespace tailrun

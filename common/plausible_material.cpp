@@ -2,18 +2,17 @@
 
 #include <fmt/core.h>
 
-#include <numbers>
+#include "common/plausible_angles.hpp"
+#include "common/plausible_stiffness.hpp"
+#include "common/plausible_voids.hpp"
 
 namespace tailrun {
 namespace {
 
-constexpr double lightest = 30.0;              // kg/m3: below it the number is of another unit
-constexpr double heaviest = 4000.0;            // kg/m3
-constexpr double least_strength = 100.0;       // Pa
-constexpr double least_share_strength = 1e-3;  // of the soil's own weight
-constexpr double least_share_stiffness = 0.5;  // of the soil's own weight
-constexpr double least_water_stiffness = 1e7;  // Pa
-constexpr double largest_radians = 1.6;        // a right angle
+constexpr double lightest = 30.0;         // kg/m3: below it the number is of another unit
+constexpr double heaviest = 4000.0;       // kg/m3
+constexpr double least_strength = 100.0;  // Pa
+constexpr double most_residual = 1e6;     // Pa
 constexpr double largest_coefficient = 5000.0;
 constexpr double largest_factor = 10.0;
 constexpr double least_ground_stress = 1e3;                      // Pa
@@ -44,44 +43,20 @@ void check_density(const CaseNode& node, double density, const MaterialSetting& 
 
 }  // namespace
 
-void check_angle(const CaseNode& node, const std::string& key, double degrees) {
-  if (degrees > 0.0 && degrees < largest_radians)
-    node.warn(key, fmt::format("{:g} degrees; {:g} radians would be {:.3g} degrees", degrees, degrees,
-                               degrees * 180.0 / std::numbers::pi));
-}
-
 void check_material(const CaseNode& node, const MaterialSetting& setting) {
+  check_voids(node);
   if (setting.gravity <= 0.0) return;
   const auto density = node.peek("density");
   if (density) check_density(node, *density, setting);
-  const double weight = density.value_or(1800.0) * setting.gravity * setting.height;
-  // Slurry has a few pascals; frictional soil is given as few for the sake of numbers.
-  const bool has_more = setting.flows_by_rate || node.peek("friction_angle").value_or(0.0) > 0.0;
-  for (const char* key : {"cohesion", "strength"})
-    if (const auto c = node.peek(key);
-        !has_more && c && *c > 0.0 && *c < least_strength && *c < least_share_strength * weight)
-      node.warn(key,
-                fmt::format("{:g} Pa is a thousandth of what soils have; is it {:g} kPa = {:g} Pa?", *c, *c, 1e3 * *c));
+  check_against_weight(node, setting);
+  check_too_large(node, setting);
+  check_angles(node);
   check_fraction(node, "strength_ratio", overconsolidated);
   if (const auto p = node.peek("atmospheric_pressure"); p && (*p < least_atmosphere || *p > most_atmosphere))
     node.warn("atmospheric_pressure",
               fmt::format("{:g} Pa is no pressure of the atmosphere (101300 Pa); is it in another unit?", *p));
-  for (const char* key : {"shear_modulus", "youngs_modulus"})
-    if (const auto stiffness = node.peek(key); stiffness && *stiffness < least_share_stiffness * weight)
-      node.warn(key, fmt::format("{:g} Pa is less than {:g} m of this soil weigh ({:.3g} Pa), under which it would go "
-                                 "flat; is it {:g} kPa = {:g} Pa (or MPa)?",
-                                 *stiffness, setting.height, weight, *stiffness, 1e3 * *stiffness));
-  for (const char* key : {"friction_angle", "phi_cv", "phi_b_max"})
-    if (const auto angle = node.peek(key)) check_angle(node, key, *angle);
   if (const auto g0 = node.peek("G0"); g0 && *g0 > largest_coefficient)
     node.warn("G0", fmt::format("{:g}; it is a coefficient without unit (100 to 2000), G = G0 p_A sqrt(p/p_A)", *g0));
-}
-
-void check_water_stiffness(const CaseNode& node, const std::string& key, double bulk_modulus, double gravity) {
-  if (gravity > 0.0 && bulk_modulus < least_water_stiffness)
-    node.warn(key, fmt::format("{:g} Pa is far below that of water (2.2e9 Pa, with air in it down to {:g}); is it {:g} "
-                               "kPa = {:g} Pa?",
-                               bulk_modulus, least_water_stiffness, bulk_modulus, 1e3 * bulk_modulus));
 }
 
 void check_factor(const CaseNode& node, const std::string& key, double factor) {
@@ -96,6 +71,9 @@ void check_residual_strength(const CaseNode& node, const std::string& key, doubl
               fmt::format("{:g} Pa is a thousandth of what liquefied soils have (1 to 50 kPa); is it {:g} kPa = {:g} "
                           "Pa?",
                           strength, strength, 1e3 * strength));
+  if (strength > most_residual)
+    node.warn(key, fmt::format("{0:g} Pa is far more than liquefied soils have (1 to 50 kPa); is it {1:g} or {2:g} Pa?",
+                               strength, 1e-3 * strength, 1e-6 * strength));
 }
 
 void check_fraction(const CaseNode& node, const std::string& key, double most) {

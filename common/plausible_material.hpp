@@ -11,7 +11,8 @@ namespace tailrun {
 // own.
 struct MaterialSetting {
   double gravity = 9.81;          // m/s2, its size
-  double height = 10.0;           // m, of the soil: its own weight is what strength and stiffness are compared with
+  double height = 10.0;           // m, of the soil: its own weight is what strength and stiffness are compared with;
+                                  // 0 = not known yet
   double water_density = 1000.0;  // kg/m3
   bool has_water = false;
   bool flows_by_rate = false;  // its strength grows with the rate of shear
@@ -21,27 +22,22 @@ struct MaterialSetting {
 //   density          under 30: g/cm3 or kN/m3 (error). Under water's, where there is water, the soil would float and
 //   its
 //                    effective stress be a tension; beyond 4000 no soil or rock of a dam is
-//   cohesion         above 0 and under both 100 Pa and a thousandth of the soil's weight: kPa, where it is all the
-//   strength
-//                    (neither friction nor "rate" beside it)
-//   shear_modulus, youngs_modulus
-//                    under half of the soil's weight, which it would not carry without flattening: kPa or MPa
-//   friction_angle, phi_cv, phi_b_max
-//                    above 0 and under 1.6: radians
-//   strength         (of PM4Silt, S_u) as cohesion
+//   stiffness, strengths
+//                    common/plausible_stiffness.hpp
+//   angles           common/plausible_angles.hpp
+//   void ratios, porosity, relative density
+//                    common/plausible_voids.hpp; these are what is judged without gravity, too
 //   strength_ratio   (S_u over sigma'_v0) above 5, which overconsolidated clay does not reach: a percentage (error)
 //   atmospheric_pressure
 //                    outside of 5e4 to 2e5: kPa or another unit (warning)
 //   G0               a coefficient of 100 to 2000 in PM4: above 5000 it is taken for a modulus
 void check_material(const CaseNode& material, const MaterialSetting& setting);
 
-// Pa, of the pore water: under 1e7 even with air in it, 2.2e9 without: kPa or MPa.
-void check_water_stiffness(const CaseNode& node, const std::string& key, double bulk_modulus, double gravity);
-
 // "factor" on a strength: above 10 it is a percentage (error).
 void check_factor(const CaseNode& node, const std::string& key, double factor);
 
-// A residual strength of liquefied soil, Pa: above 0 and under 100 it is kPa (soils have 1 to 50 kPa).
+// A residual strength of liquefied soil, Pa (soils have 1 to 50 kPa): above 0 and under 100 it is kPa; over 1e6, which
+// hard clay does not reach, it was multiplied once too often.
 void check_residual_strength(const CaseNode& node, const std::string& key, double strength);
 
 // A shear stress or strength over sigma'_v0 ("ratio", "minimum_ratio", "csr", "strength_ratio"): a fraction. Above
@@ -64,8 +60,5 @@ void check_cone_stress(const CaseNode& node, const std::string& key);
 
 // "cone_resistance" without unit, normalised by p_A = 0.1 MPa: above 0 and under 10 it is rather one in MPa (warning).
 void check_normalised_cone(const CaseNode& node, const std::string& key, const char* symbol);
-
-// A friction angle in degrees that looks like radians.
-void check_angle(const CaseNode& node, const std::string& key, double degrees);
 
 }  // namespace tailrun

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace tailrun {
 namespace {
@@ -12,6 +13,8 @@ constexpr double earth = 9.81;                                     // m/s2
 constexpr double least_gravity = 9.0, most_gravity = 11.0;         // m/s2
 constexpr double no_matter = 30.0;                                 // kg/m3: below it the number is of another unit
 constexpr double slowest = 10.0;                                   // m/s, of waves in soil
+constexpr double fastest_shear = 5e3, fastest_p = 1e4;             // m/s, of waves in the earth's crust
+constexpr double heaviest_rock = 4000.0;                           // kg/m3, but for ores
 constexpr double lightest_water = 900.0, heaviest_brine = 1300.0;  // kg/m3
 constexpr double coarsest = 1.0, coarse = 0.1;                     // m/s, of gravel
 constexpr double day = 86400.0;                                    // s
@@ -95,6 +98,22 @@ void check_dashpot_soil(const CaseNode& node, const std::string& prefix, double 
                 fmt::format("{0:g} m/s is slower than waves are in any soil (50 to 400 m/s; rock 700 and "
                             "more); {0:g} km/s are {1:g} m/s",
                             *speed, 1e3 * *speed));
+  if (const auto density = node.peek(key); density && *density > heaviest_rock)
+    node.warn(key, fmt::format("{0:g} kg/m3 is more than rock has (2000 to 3300): the base takes in less of the waves; "
+                               "{0:g} g/m3 are {1:g} kg/m3",
+                               *density, 1e-3 * *density));
+  const auto shear = node.peek(prefix + "shear_velocity"), p = node.peek(prefix + "p_velocity");
+  for (const auto& [wave, speed, fastest] :
+       {std::tuple{"shear_velocity", shear, fastest_shear}, std::tuple{"p_velocity", p, fastest_p}})
+    if (speed && *speed > fastest)
+      node.warn(prefix + wave, fmt::format("{0:g} m/s is faster than such waves are in any rock ({1:g} m/s): the base "
+                                           "is all but rigid; {0:g} mm/s are {2:g} m/s",
+                                           *speed, fastest, 1e-3 * *speed));
+  // No elastic body has less than sqrt(4 / 3), where its volume gives way freely.
+  if (shear && p && *p > 0.0 && *p < 1.15 * *shear)
+    node.warn(prefix + "p_velocity", fmt::format("{:g} m/s is not faster than the shear waves ({}shear_velocity {:g} "
+                                                 "m/s), as it is in all matter by 1.15 at least; are they exchanged?",
+                                                 *p, prefix, *shear));
 }
 
 std::vector<double> read_phreatic_line(const CaseNode& node) {

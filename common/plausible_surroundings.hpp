@@ -35,9 +35,12 @@ void check_permeability(const CaseNode& node, const std::string& key, const std:
 
 // Rock (or soil) beyond the model's edge, whose density and wave speeds make the dashpots there; keys as they are
 // there:
-//   density       under 30: g/cm3 or kN/m3 (error), since the dashpot would be none
+//   density       under 30: g/cm3 or kN/m3 (error), since the dashpot would be none; over 4000, which rock has not: in
+//                 g/m3 or another unit (warning)
 //   shear_velocity, p_velocity
-//                 above 0 and under 10 m/s: km/s (warning)
+//                 above 0 and under 10 m/s: km/s (warning); over 5000 and 10000 m/s, which no rock of the crust has:
+//                 mm/s, or a base that is all but rigid (warning)
+//   p_velocity    under 1.15 times shear_velocity, less than any elastic body has (warning)
 // each with `prefix` before it ("rock_density"). Nothing without gravity.
 void check_dashpot_soil(const CaseNode& node, const std::string& prefix, double gravity);
 

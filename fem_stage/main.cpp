@@ -22,6 +22,7 @@
 #include <filesystem>
 
 #include "common/application.hpp"
+#include "common/case_file.hpp"
 #include "common/case_settings.hpp"
 #include "common/command_line.hpp"
 #include "common/error.hpp"
@@ -35,6 +36,7 @@
 #include "fem_stage/element_test/calibration.hpp"
 #include "fem_stage/element_test/element_test.hpp"
 #include "fem_stage/mesh/gmsh_mesh.hpp"
+#include "fem_stage/model/own_weight.hpp"
 #include "fem_stage/output/state_file.hpp"
 #include "fem_stage/stage/geostatic.hpp"
 #include "fem_stage/stage/shake.hpp"
@@ -61,7 +63,9 @@ fs::path geostatic_path(const Arguments& arguments) {
 // What is wrong with the model is said with a pointer into the case; here the case's name comes before it.
 Model model_of(const Arguments& arguments, const FemCase& options) {
   try {
-    return build_model(options, mesh_path(arguments));
+    Model model = build_model(options, mesh_path(arguments));
+    check_own_weight(CaseFile(arguments.case_file).root(), model);
+    return model;
   } catch (const InputError& error) {
     const std::string text = error.what();
     for (const char* root : {"/boundaries", "/regions", "/loads", "/output", "/above_phreatic_line", "/phreatic_line"})

@@ -21,6 +21,7 @@
 #include "common/case_settings.hpp"
 #include "common/command_line.hpp"
 #include "common/error.hpp"
+#include "common/interrupt.hpp"
 #include "common/json_text.hpp"
 #include "common/log.hpp"
 #include "common/output_place.hpp"
@@ -32,6 +33,7 @@
 #include "transfer_tool/audit/particle_set.hpp"
 #include "transfer_tool/balance/equilibrate.hpp"
 #include "transfer_tool/import/import_tables.hpp"
+#include "transfer_tool/import/motion_and_rest.hpp"
 #include "transfer_tool/inspect/file_report.hpp"
 #include "transfer_tool/options/transfer_case.hpp"
 #include "transfer_tool/sample/pond_reach.hpp"
@@ -112,6 +114,7 @@ void hand_over(const RunOptions& options) {
   // 1. Sample
   const std::vector<bool> kept = kept_elements(snapshot, wanted.sampling);
   check_request(file, options.size, snapshot, kept, wanted.sampling, options.output_path);
+  stop_if_told("the sampling");
   const SamplePoints points = sample(snapshot, kept, wanted.sampling);
   warn_about(snapshot, wanted, kept, points);
   // Before stresses are weighed: water that is not there would be the reason for what they lack.
@@ -120,9 +123,11 @@ void hand_over(const RunOptions& options) {
   check_state(columns_of(snapshot, options.snapshot_path, kept, true));
 
   // 2. Map
+  stop_if_told("the mapping");
   const PointState state = map_state(snapshot, points, wanted.state);
 
   // 3. Assign
+  stop_if_told("the rules");
   const Assignment assignment = assign(snapshot, points, state, wanted.rules);
   for (const auto& warning : assignment.warnings) add_warning(warning);
   ParticleSet particles = particle_set(snapshot, points, state, assignment);
@@ -130,9 +135,11 @@ void hand_over(const RunOptions& options) {
   if (wanted.terrain.walls)
     for (auto& line : wall_lines(snapshot, kept, wanted.terrain)) particles.terrain.push_back(std::move(line));
   particles.ponds = ponds;
+  stop_if_told("the balance");
   if (wanted.state.equilibrate) put_in_balance(file, wanted.sampling.cell_size, snapshot.gravity, particles);
 
   // 4. Audit
+  stop_if_told("the audit");
   const Audit result = audit(
       snapshot, kept, wanted.state.remove_base_motion ? snapshot.base_velocity : std::array<double, 2>{}, particles);
   require_conserved(result);
@@ -141,6 +148,7 @@ void hand_over(const RunOptions& options) {
                particles.particle_size, audit_table(result));
 
   // 5. Write
+  stop_if_told("the writing");
   particles.notes["audit"] = text_of_json(audit_json(result), 1);
   particles.notes["assignment"] = text_of_json(assignment.record, 1);
   if (!warnings().empty()) particles.notes["warnings"] = text_of_json(nlohmann::ordered_json(warnings()), 1);
@@ -166,14 +174,17 @@ void import(const std::string& case_path, const std::string& output_path) {
   Provenance provenance{"transfer_tool", {}, {}};
   const CaseFile file(case_path);
   const Snapshot snapshot = import_tables(file, provenance);
+  stop_if_told("the checks");
   for (const auto& input : provenance.inputs) {
     require_no_input(output_path, input);
     require_no_input(options_of(output_path), input);
   }
   check_standing_water(snapshot, std::vector<bool>(snapshot.elements(), true), pond_reaches(snapshot), true);
   check_state(columns_of(snapshot, case_path, {}, true));
+  check_rest_and_motion(file.root(), snapshot);
   const std::string title = "transfer_tool import " + case_path;
   echo_options(title, file.echo(), options_of(output_path));
+  stop_if_told("the writing");
   write_snapshot(output_path, snapshot, provenance);
   write_options(options_of(output_path), title, file.echo());
   if (!quiet())
@@ -195,9 +206,11 @@ void strength(const StrengthOptions& options) {
       add_warning(fmt::format("--percentiles: {0:g} %, less than one in a hundred; a fraction of {0:g} is {1:g} %",
                               percentile, 100.0 * percentile));
   const CaseFile file(options.case_path);
+  stop_if_told("the curves");
   const auto curves = strength_curves(file, options.percentiles);
   fmt::print("{}", strength_text(curves, 1e3 * options.highest));
   if (options.output_path.empty()) return;
+  stop_if_told("the writing");
   write_text_file(options.output_path, strength_csv(curves, 1e3 * options.highest, points));
   log_info("wrote {}", options.output_path);
 }
@@ -217,7 +230,10 @@ int main(int argc, char** argv) {
                   "Snapshot of the state before shaking, for sigma'_v0 and r_u (default: the snapshot's own record)");
   run_command.add("-o,--output", options.output_path, "Particles file to write", required);
   run_command.add("--size", options.size, "Entry of the case's \"sizes\", e.g. coarse");
-  run_command.does([&] { run(options); });
+  run_command.does([&] {
+    note_signals();
+    run(options);
+  });
 
   std::string info_path;
   bool as_json = false;
@@ -234,7 +250,10 @@ int main(int argc, char** argv) {
   SubCommand import_command = line.add_command("import", "Another code's state, as CSV tables, to a snapshot");
   import_command.add("case", import_path, "import.json", required);
   import_command.add("-o,--output", snapshot_path, "Snapshot to write", required);
-  import_command.does([&] { import(import_path, snapshot_path); });
+  import_command.does([&] {
+    note_signals();
+    import(import_path, snapshot_path);
+  });
 
   StrengthOptions strength_options;
   SubCommand strength_command = line.add_command(
@@ -245,7 +264,10 @@ int main(int argc, char** argv) {
   strength_command.add("--percentiles", strength_options.percentiles, "Of models that know them, in %: 16,33,50,84",
                        0.01, 99.99);
   strength_command.add("--stress-to", strength_options.highest, "Largest sigma'_v0, in kPa (400)", 1.0, 1e5);
-  strength_command.does([&] { strength(strength_options); });
+  strength_command.does([&] {
+    note_signals();
+    strength(strength_options);
+  });
 
   return line.run(argc, argv);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/error.hpp"
+#include "common/plausible_angles.hpp"
 #include "common/plausible_material.hpp"
 #include "common/residual_strength/relations.hpp"
 #include "common/residual_strength/strength_law.hpp"

@@ -4,6 +4,8 @@
 
 #include "common/case_file.hpp"
 #include "common/plausible_material.hpp"
+#include "common/plausible_stiffness.hpp"
+#include "common/plausible_voids.hpp"
 
 namespace tailrun::fem {
 
@@ -42,6 +44,7 @@ ElementTestCase read_element_test(const std::filesystem::path& case_file) {
   const CaseFile file(case_file);
   const CaseNode root = file.root();
   ElementTestCase test;
+  check_voids(root.object("material"));
   test.material = read_material(root.object("material"), "element test");
   check_material(root.object("material"), {});
 
@@ -65,6 +68,8 @@ ElementTestCase read_element_test(const std::filesystem::path& case_file) {
     if (test.drainage == Drainage::undrained) {
       test.fluid_bulk_modulus =
           loading.number_or("fluid_bulk_modulus", "Pa", Range::positive(), test.fluid_bulk_modulus);
+      check_water_stiffness(loading, "fluid_bulk_modulus", test.fluid_bulk_modulus, 9.81);
+      check_voids(loading);
       test.porosity = loading.number_or("porosity", "1", Range::open(0.0, 1.0), porosity_of(test.material));
     }
     test.stop_strain =

@@ -9,7 +9,10 @@
 #include "common/error.hpp"
 #include "common/plain_names.hpp"
 #include "common/plausible_material.hpp"
+#include "common/plausible_stiffness.hpp"
 #include "common/plausible_surroundings.hpp"
+#include "common/plausible_voids.hpp"
+#include "fem_stage/model/doubled_entries.hpp"
 #include "fem_stage/model/idle_loads.hpp"
 
 namespace tailrun::fem {
@@ -30,16 +33,6 @@ void limit_steps(const CaseNode& node, const std::string& key, double length, do
     node.fail(key,
               fmt::format("found {:g} s, which makes {:.3g} steps of the {} of {:g} s, but at most {:g} are allowed",
                           step, length / step, what, length, most_steps));
-}
-
-// m, of the soil, before a mesh is there to measure it: that of a rectangle, else of a dam, in a centrifuge of its
-// model.
-double likely_height(const MeshOptions& mesh, double gravity) {
-  constexpr double dam = 30.0, earth = 9.81;  // m, m/s2
-  if (!mesh.rectangle) return dam * earth / std::max(gravity, earth);
-  double height = 0.0;
-  for (const RectangleLayer& layer : mesh.rectangle->layers) height += layer.height;
-  return height;
 }
 
 RectangleMesh read_rectangle(const CaseNode& node) {
@@ -106,6 +99,7 @@ AbovePhreaticLine read_above_phreatic_line(const CaseNode& node) {
   AbovePhreaticLine out;
   out.soft_fluid = node.choice_or("water", {"drained", "soft_fluid"}, "drained") == "soft_fluid";
   if (!out.soft_fluid) return out;
+  check_voids(node);
   out.saturation = node.number_or("saturation", "1", Range::between(0.0, 1.0), out.saturation);
   out.surface_drained = node.choice_or("surface", {"drained", "sealed"}, "drained") == "drained";
   return out;
@@ -203,13 +197,23 @@ void warn_if_below_step(const CaseNode& node, const std::string& key, double int
                                what));
 }
 
-OutputOptions read_output(const CaseNode& node, double step) {
+// Of what is only before the shaking and at its end; snapshots are judged by their plan (output/snapshot_plan.hpp).
+void warn_if_beyond_end(const CaseNode& node, const std::string& key, double interval, double duration) {
+  if (node.has(key) && interval > duration)
+    node.warn(key,
+              fmt::format("{0:g} s is longer than the shaking (/shake/duration, {1:g} s): no row comes between its "
+                          "start and its end; {0:g} ms are {2:g} s",
+                          interval, duration, 1e-3 * interval));
+}
+
+OutputOptions read_output(const CaseNode& node, double step, double duration) {
   OutputOptions out;
   out.snapshots = node.numbers_or("snapshots", "s", Range::non_negative(), {});
   std::sort(out.snapshots.begin(), out.snapshots.end());
   out.snapshot_interval = node.number_or("snapshot_interval", "s", Range::non_negative(), 0.0);
   out.history_interval = node.number_or("history_interval", "s", Range::positive(), out.history_interval);
   warn_if_below_step(node, "snapshot_interval", out.snapshot_interval, step, "a snapshot");
+  warn_if_beyond_end(node, "history_interval", out.history_interval, duration);
   warn_if_below_step(node, "history_interval", out.history_interval, step, "a row");
   out.points = read_points(node, "points");
   out.elements = read_points(node, "elements");
@@ -266,10 +270,11 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
     const std::string& name = member.first;
     const CaseNode& node = member.second;
     material_names.push_back(name);
+    check_voids(node);
     out.materials.push_back(read_material(node, name));
     MaterialSetting setting;
     setting.gravity = out.gravity;
-    setting.height = likely_height(out.mesh, out.gravity);
+    setting.height = 0.0;  // what compares with the weight waits for the mesh: model/own_weight.hpp
     setting.water_density = out.fluid_density;
     setting.has_water = !out.phreatic_line.empty();
     check_material(node, setting);
@@ -312,7 +317,9 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
   out.geostatic = read_geostatic(root.object_or_empty("geostatic"));
   out.shake = read_shake(root.object("shake"));
   out.consolidation = read_consolidation(root.object_or_empty("consolidation"));
-  out.output = read_output(root.object_or_empty("output"), out.shake.time_step);
+  out.output = read_output(root.object_or_empty("output"), out.shake.time_step, out.shake.duration);
+  warn_of_doubled_loads(root, out.loads, out.shake.duration);
+  refuse_doubled_dashpots(root, out.boundaries.free_field);
   warn_of_idle_loads(root, out.loads, out.shake.duration, out.shake.time_step);
   file.finish();
   out.echo = file.echo();

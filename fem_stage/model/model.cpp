@@ -14,6 +14,7 @@
 #include "fem_stage/model/free_water.hpp"
 #include "fem_stage/model/mesh_joints.hpp"
 #include "fem_stage/model/output_places.hpp"
+#include "fem_stage/model/own_weight.hpp"
 #include "fem_stage/model/soft_fluid.hpp"
 #include "fem_stage/model/stage_freedoms.hpp"
 
@@ -208,6 +209,7 @@ Model build_model(const FemCase& options, const std::filesystem::path& mesh_file
   if (const double scale = load_scale(model); scale > 0.0)
     model.weight = options.gravity > 0.0 ? std::max(model.weight, scale) : scale;
   gather_held_pressures(options, model);
+  check_pressures(model);
   warn_of_weightless_water(model);
   check_ponds_meet_line(model);
   if (options.boundaries.base != BaseKind::none) gather_base(model);

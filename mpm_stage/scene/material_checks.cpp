@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/plausible_angles.hpp"
 #include "common/plausible_material.hpp"
+#include "common/plausible_stiffness.hpp"
 #include "mpm_stage/scene/scene_checks.hpp"
 
 namespace tailrun::mpm {
@@ -50,6 +52,7 @@ void check_fluid(const CaseNode& node, const MaterialSetting& setting) {
 void check_softening(const CaseNode& material, const Material& m, double cell_size) {
   const Softening& s = m.softening;
   if (!s.active) return;
+  check_angles(material.object("softening"));
   const bool coheres = has_cohesion(m), cohesion_falls = coheres && s.cohesion_ratio < 1.0;
   const bool friction_falls = s.residual_friction >= 0.0 && s.residual_friction < m.friction_angle;
   if (!cohesion_falls && !friction_falls)

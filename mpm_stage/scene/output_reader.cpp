@@ -29,6 +29,13 @@ void read_output(const CaseNode& root, Scene& scene) {
   o.frame_precision = node.choice_or("frame_precision", {"double", "single"}, "double") == "single" ? Precision::single
                                                                                                     : Precision::full;
   o.series_interval = node.number_or("series_interval", "s", Range::positive(), o.series_interval);
+  for (const auto& [key, interval] :
+       {std::pair{"frame_interval", o.frame_interval}, std::pair{"series_interval", o.series_interval}})
+    if (node.has(key) && interval > scene.end_time)
+      node.warn(key,
+                fmt::format("{0:g} s is longer than the run (/time/end, {1:g} s): there is nothing between its start "
+                            "and its end; {0:g} ms are {2:g} s",
+                            interval, scene.end_time, 1e-3 * interval));
   const std::string direction = node.choice_or("front_direction", {"+x", "-x", "+y", "-y", "+z", "-z"}, "+x");
   o.front_sign = direction[0] == '+' ? 1.0 : -1.0;
   o.front_axis = direction[1] - 'x';

@@ -17,6 +17,13 @@ void check_gravity(const CaseNode& root, const Scene& scene);
 // (start_checks.cpp).
 void check_start(const CaseNode& root, const Scene& scene);
 
+// Bodies that never come near soil, ground or the domain; histories of velocity that go on long after the run, begin
+// after it or are shorter than a step; two bodies in one place (body_checks.cpp).
+void check_bodies(const CaseNode& root, const Scene& scene);
+
+// Two terrain lines on each other: an error where they differ, else a warning (doubled_ground.cpp).
+void check_doubled_ground(const CaseNode& root, const Scene& scene);
+
 // Entries of "materials": common/plausible_material.hpp, and keys that only mpm.json has (material_checks.cpp).
 void check_materials(const CaseNode& root, const Scene& scene);
 

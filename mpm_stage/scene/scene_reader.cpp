@@ -276,6 +276,8 @@ Scene read_scene(const CaseFile& file, const std::filesystem::path& particles_ov
   check_gravity(root, scene);
   check_materials(root, scene);
   check_start(root, scene);
+  check_bodies(root, scene);
+  check_doubled_ground(root, scene);
   check_ponds(root, scene);
   check_handed_over(scene);
   read_base_motion(root, scene);

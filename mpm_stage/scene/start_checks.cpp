@@ -63,7 +63,7 @@ void check_particles(const CaseNode& root, const Scene& scene) {
                     beyond_waves, set.count(), most_ratio * wave_there, wave_there, where(worst)));
 }
 
-void check_bodies(const CaseNode& root, const Scene& scene) {
+void check_speeds(const CaseNode& root, const Scene& scene) {
   for (std::size_t b = 0; b < scene.walls.bodies.size(); ++b) {
     double most = 0.0;
     for (const auto& v : scene.walls.bodies[b].velocity) most = std::max(most, std::hypot(v[0], v[1], v[2]));
@@ -106,7 +106,7 @@ void check_stresses(const CaseNode& root, const Scene& scene) {
 
 void check_start(const CaseNode& root, const Scene& scene) {
   check_particles(root, scene);
-  check_bodies(root, scene);
+  check_speeds(root, scene);
   check_stresses(root, scene);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "common/element_mean.hpp"
@@ -12,6 +13,7 @@
 #include "common/plain_names.hpp"
 #include "common/plausible_material.hpp"
 #include "common/plausible_surroundings.hpp"
+#include "common/plausible_voids.hpp"
 #include "common/warnings.hpp"
 #include "transfer_tool/import/csv_table.hpp"
 #include "transfer_tool/sample/mesh_geometry.hpp"
@@ -207,6 +209,7 @@ void set_base_velocity(const CaseNode& root, Snapshot& snapshot) {
 // As fem.json has them.
 void set_ponds(const CaseNode& root, Snapshot& snapshot) {
   std::vector<std::string> names;
+  std::set<std::string> flooded;
   for (const auto& line : snapshot.lines) names.push_back(line.name);
   for (const CaseNode& node : root.list_or_empty("ponded_water")) {
     PondedLines pond{node.number("level", "m", Range::any()), node.texts_or("lines", {})};
@@ -215,6 +218,9 @@ void set_ponds(const CaseNode& root, Snapshot& snapshot) {
       if (std::find(names.begin(), names.end(), name) == names.end())
         node.fail("lines", fmt::format("no edge of the mesh lies on a line '{}'.{} Lines of the table 'nodes': {}",
                                        name, did_you_mean(name, names), names.empty() ? "none" : joined(names)));
+    for (const auto& name : pond.lines)
+      if (!flooded.insert(name).second)
+        node.fail("lines", fmt::format("line '{}' is under water twice, and would be pressed twice", name));
     snapshot.ponds.push_back(std::move(pond));
   }
 }
@@ -240,6 +246,7 @@ Snapshot import_tables(const CaseFile& file, Provenance& provenance) {
   for (const auto& name : snapshot.region_names) {
     const CaseNode region = region_options.object(name);
     density.push_back(region.number("density", "kg/m3", Range::positive()));
+    check_voids(region);
     MaterialSetting setting;
     setting.gravity = snapshot.gravity;
     setting.water_density = snapshot.fluid_density;

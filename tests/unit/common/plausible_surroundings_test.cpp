@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include <fstream>
 #include <functional>
 
@@ -87,6 +89,19 @@ TEST_CASE("rock beyond the edge: density in g/cm3 is an error, waves in km/s a w
   CHECK(said_of_rock(R"("rock_density": 2.5)").find("2.5 g/cm3 are 2500 kg/m3") != std::string::npos);
   CHECK(said_of_rock(R"("rock_density": 2.5)").starts_with("error: "));
   CHECK(said_of_rock(R"("rock_shear_velocity": 0.7)").find("0.7 km/s are 700 m/s") != std::string::npos);
+}
+
+TEST_CASE("rock beyond the edge: too fast, too dense, its waves exchanged") {
+  const auto rock = [](double density, double shear, double p) {
+    return said_of_rock(
+        fmt::format(R"("rock_density": {}, "rock_shear_velocity": {}, "rock_p_velocity": {})", density, shear, p));
+  };
+  CHECK(rock(3300, 4500, 8000) == "");
+  CHECK(rock(1900, 200, 374) == "");
+  CHECK(rock(2500, 700000, 1.3e6).find("700000 mm/s are 700 m/s") != std::string::npos);
+  CHECK(rock(2500, 700, 1.3e6).find("/rock_p_velocity: 1.3e+06 m/s is faster") != std::string::npos);
+  CHECK(rock(2.5e6, 700, 1300).find("2.5e+06 g/m3 are 2500 kg/m3") != std::string::npos);
+  CHECK(rock(2500, 1300, 700).find("are they exchanged?") != std::string::npos);
 }
 
 TEST_CASE("a phreatic line ascends in x") {

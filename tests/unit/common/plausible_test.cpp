@@ -1,6 +1,8 @@
 // What soil cannot be is said, with the likely unit; what it can be is not.
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include <fstream>
 
 #include "common/error.hpp"
@@ -88,6 +90,57 @@ TEST_CASE("materials in another unit") {
   CHECK(contains(said_of_material(R"("strength_ratio": 25)"), "error: "));
   CHECK(contains(said_of_material(R"("atmospheric_pressure": 101.3)"), "no pressure of the atmosphere"));
   CHECK(contains(said_of_material(R"("phi_b_max": 1.05)"), "1.05 radians would be 60.2 degrees"));
+}
+
+TEST_CASE("angles in radians, wherever a key is an angle of soil") {
+  for (const char* key : {"friction_angle", "residual_friction_angle", "phi_cv", "phi_b_max"})
+    CHECK(contains(said_of_material(fmt::format(R"("{}": 0.35)", key)),
+                   fmt::format("/{}: 0.35 degrees; 0.35 radians would be 20.1 degrees", key)));
+  CHECK(contains(said_of_material(R"("friction_angle": 33, "dilation_angle": 0.2)"), "would be 11.5 degrees"));
+  // None, next to none, and what loose sand has.
+  for (const double meant : {0.0, 0.1, 1.0, 5.0})
+    CHECK(said_of_material(fmt::format(R"("friction_angle": 33, "dilation_angle": {})", meant)) == "");
+}
+
+TEST_CASE("stiffness and strengths that were multiplied once too often") {
+  const auto soil = [](double young, double cohesion, double density = 1900.0) {
+    return said_of_material(fmt::format(R"("density": {}, "youngs_modulus": {}, "cohesion": {}, "friction_angle": 30)",
+                                        density, young, cohesion));
+  };
+  CHECK(soil(3e7, 15e3) == "");
+  CHECK(soil(5e9, 5e5, 2100.0) == "");
+  CHECK(soil(5e10, 1e7, 2700.0) == "");  // granite
+  CHECK(contains(soil(3e10, 15e3), "/youngs_modulus: 3e+10 Pa is more than soil or rock has of 1900 kg/m3"));
+  CHECK(contains(soil(3e10, 15e3), "is it 3e+07 or 30000 Pa?"));
+  CHECK(contains(soil(3e13, 15e3), "more than any matter has"));
+  CHECK(contains(soil(3e7, 15e6), "/cohesion: 1.5e+07 Pa is 0.5 of Young's modulus"));
+  CHECK(contains(soil(3e7, 15e9), "An elastic law has no strength at all"));
+  // Elastic bodies: acrylic, concrete, a soft bar; steel, whose density alone is remarked on.
+  for (const char* bar : {R"("density": 1180, "youngs_modulus": 3e9)", R"("density": 2400, "youngs_modulus": 3e10)",
+                          R"("density": 2000, "shear_modulus": 1e9)"})
+    CHECK(said_of_material(bar) == "");
+  CHECK_FALSE(contains(said_of_material(R"("density": 7850, "youngs_modulus": 2e11)"), "youngs_modulus"));
+  CHECK(contains(said_of_material(R"("density": 1900, "shear_modulus": 5e10)"), "concrete, of 2400 kg/m3"));
+  CHECK(contains(said_of_material(R"("strength": 25e6)"), "/strength: 2.5e+07 Pa is more than hard clay has"));
+  CHECK(contains(said_of_material(R"("bulk_modulus": 2.2e12)"), "far above that of water"));
+}
+
+TEST_CASE("what compares with the soil's weight waits for a height") {
+  MaterialSetting unknown;
+  unknown.height = 0.0;
+  CHECK(said_of_material(R"("shear_modulus": 4000, "cohesion": 15)", unknown) == "");
+  CHECK(contains(said_of_material(R"("density": 1.9)", unknown), "1.9 g/cm3"));
+}
+
+TEST_CASE("void ratios and shares in per cent are refused, with gravity and without") {
+  MaterialSetting none;
+  none.gravity = 0.0;
+  for (const char* keys : {R"("e_max": 80)", R"("e_min": 50)", R"("void_ratio": 90)", R"("relative_density": 35)",
+                           R"("porosity": 40)", R"("saturation": 90)"}) {
+    CHECK_MESSAGE(said_of_material(keys).starts_with("error: "), keys);
+    CHECK_MESSAGE(contains(said_of_material(keys, none), " % are 0."), keys);
+  }
+  CHECK(said_of_material(R"("e_max": 1.3, "e_min": 0.5, "void_ratio": 9, "relative_density": 1.1)") == "");
 }
 
 TEST_CASE("small scenes and scenes without gravity keep their small numbers") {

@@ -111,6 +111,74 @@ TEST_CASE("softening that softens nothing") {
   warned(soil(R"("cohesion": 0, "softening": {"end_strain": 0.1, "cohesion_ratio": 0.5})"), "the soil has no cohesion");
 }
 
+TEST_CASE("angles in radians, in materials and where they soften") {
+  warned(soil(R"("dilation_angle": 0.2)"), "/materials/soil/dilation_angle: 0.2 degrees; 0.2 radians");
+  warned(soil(R"("softening": {"end_strain": 0.1, "residual_friction_angle": 0.35})"),
+         "/materials/soil/softening/residual_friction_angle: 0.35 degrees; 0.35 radians would be 20.1");
+}
+
+TEST_CASE("moving bodies that never meet anything") {
+  const auto plate = [](const std::string& keys) { return R"({"bodies": [{"name": "plate", )" + keys + "}]}"; };
+  silent(plate(R"("low": [9, 0], "high": [10, 2], "velocity": [0, 0])"));
+  silent(plate(R"("low": [0, 2], "high": [4, 3], "velocity": [0, -0.1])"));
+  // A barrier far down the valley, and a block that comes down on the soil from above.
+  silent(plate(R"("low": [90, 0], "high": [91, 2], "velocity": [0, 0])"));
+  silent(plate(R"("low": [0, 40], "high": [4, 41], "velocity": [0, -50])"));
+  warned(plate(R"("low": [9000, 0], "high": [10000, 2000], "velocity": [0, 0])"),
+         "/bodies/0: 'plate' is never near anything: on its way through the run it has x from 9000 to 1e+04 m");
+  warned(plate(R"("low": [0, -4], "high": [4, -2], "velocity": [0, 0.1])"), "'plate' stays under the ground");
+  warned(R"({"domain": {"low": [-1, -1], "high": [9, 9]},
+             "bodies": [{"name": "plate", "low": [20, 0], "high": [21, 2], "velocity": [1, 0]}]})",
+         "the domain has x from -1 to 9 m");
+}
+
+TEST_CASE("histories of bodies in milliseconds, after the run, within a step") {
+  const auto history = [](const std::string& rows) {
+    return R"({"bodies": [{"name": "plate", "low": [9, 0], "high": [10, 2], "velocity_history": )" + rows + "}]}";
+  };
+  silent(history("[[0, 0, 0], [0.5, -1, 0], [1, 0, 0]]"));
+  silent(history("[[0, 0, 0], [10, -1, 0]]"));
+  silent(history("[[0, 0, 0], [0.5, -1, 0], [0.6, -1, 0], [0.7, -1, 0], [100, 0, 0]]"));
+  silent(history("[[0, 0, 0], [1e-9, -1, 0]]"));  // a jump
+  warned(history("[[0, 0, 0], [500, -1, 0], [1000, 0, 0]]"),
+         "/bodies/0/velocity_history: goes to 1000 s, but the run is over after 1 s, with 1 of its 3 rows; 1000 ms are "
+         "1 s");
+  warned(history("[[500, 0, 0], [600, -1, 0]]"), "begins at 500 s, when the run of 1 s is over");
+  warned(history("[[0, 0, 0], [1e-6, -1, 0], [2e-6, 0, 0]]"), "all its 3 rows lie within 2e-06 s");
+}
+
+TEST_CASE("two bodies, or two lines of the ground, in one place") {
+  const auto twice = [](const std::string& velocity) {
+    return R"({"bodies": [{"name": "a", "low": [9, 0], "high": [10, 2], "velocity": [0, 0]},
+                          {"name": "b", "low": [9, 0], "high": [10, 2], "velocity": )" +
+           velocity + "}]}";
+  };
+  warned(twice("[0, 0]"), "/bodies/1: 'b' is where 'a' (/bodies/0) is and moves as that does");
+  refused(twice("[-1, 0]"), "/bodies/1: 'b' begins in the place of 'a' (/bodies/0) and moves otherwise");
+  const auto ground = [](const std::string& line) {
+    return R"({"terrain": [{"points": [[-50, 0], [10, 0], [50, 0]], "friction": 0.5}, )" + line + "]}";
+  };
+  warned(ground(R"({"points": [[-50, 0], [50, 0]], "friction": 0.5})"),
+         "/terrain/1: line 'terrain_1' lies on line 'terrain_0' (/terrain/0) over 100 m: the same ground twice");
+  refused(ground(R"({"points": [[-50, 0], [50, 0]], "friction": 0.3})"), "it is not told which one holds");
+  // A wall on the ground, and ground that goes on with a few metres in common.
+  silent(ground(R"({"points": [[20, 0], [20, 5]], "friction": 0.5})"));
+  silent(ground(R"({"points": [[45, 0], [80, 0], [99, 9]], "friction": 0.3})"));
+}
+
+TEST_CASE("frames and rows that come after the end") {
+  silent(R"({"output": {"frame_interval": 1, "series_interval": 0.5}})");
+  silent(R"({"output": {"frame_interval": 0}})");
+  warned(R"({"output": {"frame_interval": 100}})",
+         "/output/frame_interval: 100 s is longer than the run (/time/end, 1 s): there is nothing between");
+  warned(R"({"output": {"series_interval": 50}})", "50 ms are 0.05 s");
+}
+
+TEST_CASE("stiffness and strength a thousand times too large") {
+  warned(soil(R"("youngs_modulus": 1e13)"), "/materials/soil/youngs_modulus: 1e+13 Pa is more than any matter has");
+  warned(soil(R"("cohesion": 1e7)"), "/materials/soil/cohesion: 1e+07 Pa is 1 of Young's modulus");
+}
+
 TEST_CASE("the width of a shear band in another unit") {
   const auto with = [](const std::string& length) {
     return soil(R"("softening": {"end_strain": 0.1, "cohesion_ratio": 0.5, "reference_length": )" + length + "}");

@@ -144,6 +144,23 @@ TEST_CASE("ponded water stands on lines of the tables") {
   const auto refusal = example::message_of<tailrun::InputError>(
       [] { Tables().snapshot(R"(, "ponded_water": [{"lines": ["surfce"], "level": 1.5}])"); });
   CHECK(refusal.find("Did you mean 'surface'?") != std::string::npos);
+  const auto twice = example::message_of<tailrun::InputError>([] {
+    Tables().snapshot(
+        R"(, "ponded_water": [{"lines": ["surface"], "level": 1.5}, {"lines": ["surface"], "level": 1.5}])");
+  });
+  CHECK(twice.find("/ponded_water/1/lines: line 'surface' is under water twice") != std::string::npos);
+}
+
+TEST_CASE("a porosity in per cent") {
+  const Tables tables;
+  tailrun::Provenance provenance;
+  const auto path =
+      tables.folder.write("porous.json", R"({"nodes": "nodes.csv", "quads": "quads.csv", "node_state": "node_state.csv",
+      "element_state": "element_state.csv", "regions": {"sand": {"density": 1900, "porosity": 40}, "clay": {"density": 1700}}})");
+  const auto refusal =
+      example::message_of<tailrun::InputError>([&] { import_tables(tailrun::CaseFile(path), provenance); });
+  CHECK(refusal.find("/regions/sand/porosity: found 40, but allowed is a fraction of at most 1; 40 % are 0.4") !=
+        std::string::npos);
 }
 
 TEST_CASE("half a state before the shaking is refused, none is warned of when time has passed") {
