@@ -15,6 +15,7 @@
 #include "common/warnings.hpp"
 #include "mpm_stage/checkpoint/checkpoint.hpp"
 #include "mpm_stage/output/body_series.hpp"
+#include "mpm_stage/output/energy_remarks.hpp"
 #include "mpm_stage/output/energy_watch.hpp"
 #include "mpm_stage/output/frames.hpp"
 #include "mpm_stage/output/front.hpp"
@@ -112,6 +113,8 @@ class Runout {
       frames_.write(particle_set<Dim>(scene_, solver_->particles(), record_.time));
     progress.finish(record_.stop_reason);
     if (ledger_.rows().back().time < record_.time) sample();
+    for (const std::string& remark : energy_remarks(ledger_.rows().front(), ledger_.rows().back(), ledger_.turnover()))
+      add_warning(remark);
     finish();
     std::filesystem::remove(checkpoint_);
     const FrontRow& f = front_.rows().back();

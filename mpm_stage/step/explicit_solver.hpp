@@ -115,6 +115,7 @@ class ExplicitSolver final : public Solver<Dim> {
   using Clock = std::chrono::steady_clock;
   static constexpr int tile_nodes = Tile<Dim, Shape>::nodes;
   static constexpr int block_nodes = Block<Dim>::nodes;
+  static constexpr double grazing = 0.1;         // cells, by which a particle may come to lie beyond a wall
   static constexpr double largest_drift = 0.99;  // cells, of a particle since the last sort: the tiles' margin
   // Particles that pass through the stress update together: what is known of them fits into the first-level cache.
   static constexpr std::size_t few_particles = 128;

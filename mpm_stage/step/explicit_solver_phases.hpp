@@ -97,12 +97,15 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::mind_sides(std::size_t b, Bloc
       double &x = P_.position[d][p], &v = P_.velocity[d][p];
       const bool under = x<walls_.low[d], over = x> walls_.high[d];
       if (!under && !over) continue;
-      if (walls_.leaving != LeavingParticles::wall) {
+      // Linear functions take a particle on a line of nodes for one beside it, and let it through a wall by that.
+      const bool grazes = wall_nodes_.side[d][over].kind != WallKind::open &&
+                          (under ? walls_.low[d] - x : x - walls_.high[d]) < grazing * h_;
+      if (walls_.leaving != LeavingParticles::wall && !grazes) {
         motion.outside = true;
         continue;
       }
       x = under ? walls_.low[d] : walls_.high[d];
-      held_[static_cast<std::size_t>(P_.identity[p])] = 1;
+      if (!held_.empty()) held_[static_cast<std::size_t>(P_.identity[p])] = 1;
       if (under ? v < 0.0 : v > 0.0) {
         motion.stopped += 0.5 * P_.mass[p] * v * v;
         motion.kinetic -= 0.5 * P_.mass[p] * v * v;

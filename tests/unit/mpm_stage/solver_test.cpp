@@ -231,6 +231,29 @@ TEST_CASE("particles are held at the domain's sides, stopped or removed, as aske
   CHECK_THROWS_WITH_AS(moving(LeavingParticles::error), doctest::Contains("left the domain"), std::runtime_error);
 }
 
+TEST_CASE("what a wall lets through by a hair is put back; by more, or at an open side, it has left") {
+  const Terrain none;
+  const auto after_a_step = [&](WallKind side, double cells) {
+    Walls<2> walls;
+    walls.bounded = true;
+    walls.low = {0.0, -1.0};
+    walls.high = {3.0, 3.0};
+    walls.side[0][0].kind = side;
+    Particles<2> P = block<2>(0.125, {16, 16, 1}, true);
+    const std::size_t first = 0;
+    P.position[0][first] = -cells * 0.25;
+    auto s = make_solver<2>({}, 0.25, {0.0, -1.0}, std::move(P), {soil("linear_elastic")}, none, walls);
+    s->start(1e30);
+    s->step({0, 0}, {0, 0}, 1e30);
+    double least = 1.0;
+    for (const double x : s->particles().position[0]) least = std::min(least, x);
+    return least;
+  };
+  CHECK(after_a_step(WallKind::slip, 0.05) == 0.0);
+  CHECK_THROWS_WITH_AS(after_a_step(WallKind::slip, 0.3), doctest::Contains("left the domain"), std::runtime_error);
+  CHECK_THROWS_WITH_AS(after_a_step(WallKind::open, 0.05), doctest::Contains("left the domain"), std::runtime_error);
+}
+
 TEST_CASE("a time step beyond the limit is caught with the particle's name, not carried on as garbage") {
   Terrain bed;
   bed.add_line({{{-10.0, 0.0}}, {{10.0, 0.0}}}, {0.4}, false);
