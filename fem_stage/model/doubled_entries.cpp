@@ -48,4 +48,12 @@ void refuse_doubled_dashpots(const CaseNode& root, const std::vector<FreeFieldSi
                                           sides[i].line, nodes[j].pointer()));
 }
 
+void refuse_two_held_pressures(const CaseNode& root, const std::vector<HeldPressure>& held) {
+  for (std::size_t i = 0; i < held.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (held[i].line == held[j].line && held[i].field != held[j].field)
+        root.fail(held[i].where.substr(1),
+                  fmt::format("line '{}' is held at another pore pressure already ({})", held[i].line, held[j].where));
+}
+
 }  // namespace tailrun::fem

@@ -15,4 +15,7 @@ void warn_of_doubled_loads(const CaseNode& root, const std::vector<LoadOptions>&
 // Throws InputError where a line has free-field dashpots twice: no soil takes in waves twice.
 void refuse_doubled_dashpots(const CaseNode& root, const std::vector<FreeFieldSide>& sides);
 
+// Throws InputError where a line's pore pressure is held at two values (drained lines: at 0): nodes have one.
+void refuse_two_held_pressures(const CaseNode& root, const std::vector<HeldPressure>& held);
+
 }  // namespace tailrun::fem

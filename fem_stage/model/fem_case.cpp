@@ -320,6 +320,7 @@ FemCase read_fem_case(const std::filesystem::path& path, const std::string& size
   out.output = read_output(root.object_or_empty("output"), out.shake.time_step, out.shake.duration);
   warn_of_doubled_loads(root, out.loads, out.shake.duration);
   refuse_doubled_dashpots(root, out.boundaries.free_field);
+  refuse_two_held_pressures(root, out.boundaries.held_pressure);
   warn_of_idle_loads(root, out.loads, out.shake.duration, out.shake.time_step);
   file.finish();
   out.echo = file.echo();

@@ -339,6 +339,20 @@ TEST_CASE("a load that is there twice is warned of, free-field dashpots that are
             .find("line 'left' has dashpots already (/boundaries/free_field_dashpots/0)") != std::string::npos);
 }
 
+TEST_CASE("a line's pore pressure is held at one value") {
+  const auto held = [](const std::string& drained, const std::string& first, const std::string& second) {
+    return said_of_model("", R"("drained_lines": [)" + drained +
+                                 R"(], "held_pressure": [{ "line": "top", "pressure": )" + first +
+                                 R"( }, { "line": "top", "pressure": )" + second + " }], ");
+  };
+  CHECK(held("", "[2e4]", "[1e4]")
+            .find("/boundaries/held_pressure/1: line 'top' is held at another pore pressure already "
+                  "(/boundaries/held_pressure/0)") != std::string::npos);
+  CHECK(held(R"("top")", "[1e4]", "[1e4]").find("/boundaries/held_pressure/0: line 'top' is held at another") !=
+        std::string::npos);
+  CHECK(held("", "[1e4]", "[1e4]").find("error") == std::string::npos);
+}
+
 TEST_CASE("held pressures and loads in kPa, and those that were multiplied once too often") {
   const auto held = [](const std::string& field) {
     return said_of_model("", R"("held_pressure": [{ "line": "top", "pressure": )" + field + " }], ");
