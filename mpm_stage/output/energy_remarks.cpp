@@ -15,7 +15,7 @@ constexpr double earth = 9.81;             // m/s2
 
 }  // namespace
 
-std::vector<std::string> energy_remarks(const LedgerRow& first, const LedgerRow& last, double turnover) {
+std::vector<std::string> energy_remarks(const LedgerRow& first, const LedgerRow& last, double turnover, bool flows) {
   std::vector<std::string> remarks;
   if (!(turnover > next_to_nothing * earth * last.mass)) return remarks;
   const double free = first.gravitational - last.gravitational + first.kinetic + first.elastic + last.work.external +
@@ -27,7 +27,7 @@ std::vector<std::string> energy_remarks(const LedgerRow& first, const LedgerRow&
         "J): it is this that keeps it moving, as weak soil and fluids in a pool are. Read nothing of its last motion; "
         "scheme/transfer 'apic' calms it",
         given, free));
-  if (!std::isnan(last.work.transfer) && std::fabs(last.residual) > largest_residual * turnover)
+  if (flows && !std::isnan(last.work.transfer) && std::fabs(last.residual) > largest_residual * turnover)
     remarks.push_back(fmt::format(
         "{:.1f} % of the energy turned over {} explained by neither soil, contact nor transfer (residual_J): a shorter "
         "step (time/courant) tells whether the answer depends on it",

@@ -113,7 +113,8 @@ class Runout {
       frames_.write(particle_set<Dim>(scene_, solver_->particles(), record_.time));
     progress.finish(record_.stop_reason);
     if (ledger_.rows().back().time < record_.time) sample();
-    for (const std::string& remark : energy_remarks(ledger_.rows().front(), ledger_.rows().back(), ledger_.turnover()))
+    for (const std::string& remark :
+         energy_remarks(ledger_.rows().front(), ledger_.rows().back(), ledger_.turnover(), flows()))
       add_warning(remark);
     finish();
     std::filesystem::remove(checkpoint_);
@@ -130,20 +131,23 @@ class Runout {
       motion = fmt::format(", soil still in motion (root mean square {:.2g} m/s{})", f.rms_speed,
                            std::isfinite(front) ? fmt::format(", the flow's front {:.2g} m/s", front) : "");
     }
-    // Where next to nothing flows, shares of the little that settling turns over say nothing.
-    constexpr double next_to_nothing = 0.01;  // of the mass
-    const bool flows = f.flowed_mass > next_to_nothing * ledger_.rows().back().mass;
     const double turnover = std::max(ledger_.turnover(), 1e-300), lost = ledger_.rows().back().lost;
     const std::string energy =
-        flows ? fmt::format("of {:.4g} J turned over the scheme lost {:.1f} %, residual {:.2f} %", ledger_.turnover(),
-                            100.0 * lost / turnover, 100.0 * ledger_.rows().back().residual / turnover)
-              : fmt::format("{:.4g} J turned over, {:.4g} J of it lost by the scheme", ledger_.turnover(), lost);
+        flows() ? fmt::format("of {:.4g} J turned over the scheme lost {:.1f} %, residual {:.2f} %", ledger_.turnover(),
+                              100.0 * lost / turnover, 100.0 * ledger_.rows().back().residual / turnover)
+                : fmt::format("{:.4g} J turned over, {:.4g} J of it lost by the scheme", ledger_.turnover(), lost);
     if (!quiet())
       fmt::print("{}: {} after {:.3f} s{}, {} steps; {}; {}\n", scene_.title, record_.stop_reason, record_.time, motion,
                  record_.steps, flow, energy);
   }
 
  private:
+  // Where next to nothing does, shares of the little that settling turns over say nothing.
+  bool flows() const {
+    constexpr double next_to_nothing = 0.01;  // of the mass
+    return front_.rows().back().flowed_mass > next_to_nothing * ledger_.rows().back().mass;
+  }
+
   double until_next_event(double time) const {
     const double next = std::min({series_.next(), frame_.next(), scene_.end_time});
     return next > time ? next - time : 1e300;

@@ -12,6 +12,7 @@ namespace {
 struct Fallen {
   LedgerRow first, last;
   double turnover = 1e6;  // J
+  bool flows = true;
 
   Fallen() {
     first.mass = last.mass = 1e5;
@@ -19,7 +20,7 @@ struct Fallen {
     last.gravitational = 2e6;
     last.work.plastic = 1e6;
   }
-  std::vector<std::string> remarks() const { return energy_remarks(first, last, turnover); }
+  std::vector<std::string> remarks() const { return energy_remarks(first, last, turnover, flows); }
 };
 
 }  // namespace
@@ -49,6 +50,9 @@ TEST_CASE("a residual that nothing explains is said, lost or made; unless it hol
   CHECK(run.remarks()[0].find("6.0 % of the energy turned over was lost") != std::string::npos);
   run.last.residual = -0.06e6;
   CHECK(run.remarks()[0].find("was made") != std::string::npos);
+  run.flows = false;
+  CHECK(run.remarks().empty());
+  run.flows = true;
   run.last.work.transfer = std::nan("");
   CHECK(run.remarks().empty());
 }
