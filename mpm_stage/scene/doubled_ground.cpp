@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "mpm_stage/scene/scene_checks.hpp"
 
@@ -40,15 +42,42 @@ struct Common {
   bool differs = false;
 };
 
+// Segments of `line` from left to right, so that those beside a place are found without asking all.
+class ByPlace {
+ public:
+  explicit ByPlace(const TerrainInput& line) {
+    for (std::size_t i = 1; i < line.points.size(); ++i) {
+      const double a = line.points[i - 1][0], b = line.points[i][0];
+      left_.emplace_back(std::min(a, b), i);
+      widest_ = std::max(widest_, std::fabs(b - a));
+    }
+    std::sort(left_.begin(), left_.end());
+  }
+  // action(number of the segment's end) for all that reach into low .. high.
+  template <class Action>
+  void within(double low, double high, Action action) const {
+    for (auto at = std::lower_bound(left_.begin(), left_.end(), std::pair{low - widest_, std::size_t{0}});
+         at != left_.end() && at->first <= high; ++at)
+      action(at->second);
+  }
+
+ private:
+  std::vector<std::pair<double, std::size_t>> left_;  // m; number
+  double widest_ = 0.0;                               // m
+};
+
 Common common_of(const TerrainInput& one, const TerrainInput& other, double near) {
   Common common;
-  for (std::size_t i = 1; i < one.points.size(); ++i)
-    for (std::size_t j = 1; j < other.points.size(); ++j) {
+  const ByPlace others(other);
+  for (std::size_t i = 1; i < one.points.size(); ++i) {
+    const double a = one.points[i - 1][0], b = one.points[i][0];
+    others.within(std::min(a, b) - near, std::max(a, b) + near, [&](std::size_t j) {
       const double length = common_length(one.points[i - 1], one.points[i], other.points[j - 1], other.points[j], near);
-      if (length <= near) continue;
+      if (length <= near) return;
       common.length += length;
       common.differs = common.differs || one.adhere != other.adhere || one.friction[i - 1] != other.friction[j - 1];
-    }
+    });
+  }
   return common;
 }
 
