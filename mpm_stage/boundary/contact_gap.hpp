@@ -1,6 +1,6 @@
 // Material near the ground as a node sees it. The gap: the least clearance of the particles in its reach, a particle
-// being a sphere of its own volume's size; a node stops material only when it is closed. And the mean, by volume, of
-// the shear stress that these particles can carry.
+// being a sphere of its own volume's size; a node stops material only when it is closed. The mean, by volume, of the
+// shear stress that these particles can carry. And what they cover of the ground.
 #pragma once
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "mpm_stage/boundary/contact_nodes.hpp"
+#include "mpm_stage/boundary/ground_cover.hpp"
 #include "mpm_stage/material/soil_limit.hpp"
 
 namespace tailrun::mpm {
@@ -19,12 +20,14 @@ constexpr double closed_gap = 0.01;
 constexpr double no_gap_known = std::numeric_limits<double>::infinity();
 
 // Where tiles overlap the least value wins and sums add up.
+template <int Dim>
 struct Gap {
   double value = no_gap_known;          // m
   double volume = 0.0, strength = 0.0;  // m3 and m3 Pa, times the node's weights
   // m3 Pa, the same, of soil that sticks: its tractions on the ground, along it, what of them brakes beside nodes in
   // contact (most_drag), and (compression positive) across it.
   double shear = 0.0, held = 0.0, pressure = 0.0;
+  GroundCover<Dim> cover;
   Gap& operator+=(const Gap& o) {
     value = std::min(value, o.value);
     volume += o.volume;
@@ -32,6 +35,7 @@ struct Gap {
     shear += o.shear;
     held += o.held;
     pressure += o.pressure;
+    cover |= o.cover;
     return *this;
   }
 };
@@ -92,12 +96,52 @@ std::array<double, Dim> away_from_ground(const double* distance, const int* cell
   return gradient;
 }
 
+// What a particle covers of the ground's surface, as the nodes around see it.
+template <int Dim>
+class CoveredGround {
+ public:
+  // `X` is the particle's place in the tile, `size` its width and `height` its distance from the ground, all in cells;
+  // `away` is the direction in which the distance grows.
+  CoveredGround(const double* X, double size, double height, const std::array<double, Dim>& away) {
+    const double length = std::hypot(away[0], away[1]);
+    lies_ = height < GroundCover<Dim>::thickness && length > 0.0;
+    if (!lies_) return;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      foot_[axis] = X[axis] - height * away[axis] / length;
+      // Along the slope it is as wide as on level ground; nodes look along the axis that is nearer to the slope.
+      half_[axis] = 0.5 * size * std::max(std::sqrt(0.5), std::fabs(away[1 - axis]) / length);
+    }
+    if constexpr (Dim == 3) {
+      z_ = X[2];
+      half_z_ = 0.5 * size;
+    }
+  }
+
+  // As seen from node (i, j, k) of the tile.
+  GroundCover<Dim> from(int i, int j, [[maybe_unused]] int k) const {
+    GroundCover<Dim> cover;
+    if (!lies_) return cover;
+    cover.along = {Line::under(foot_[0] - i, half_[0]), Line::under(foot_[1] - j, half_[1])};
+    if constexpr (Dim == 3) {
+      const auto across = Line::under(z_ - k, half_z_);
+      for (auto& bits : cover.along) bits = GroundCover<3>::rows(bits, across);
+    }
+    return cover;
+  }
+
+ private:
+  using Line = typename GroundCover<Dim>::Line;
+  bool lies_;
+  std::array<double, 2> foot_{}, half_{};
+  double z_ = 0.0, half_z_ = 0.0;
+};
+
 // `distance` is the tile of the nodes' signed distances, infinity where unknown; adds to the tile `gap`. The materials
 // are those of the particles' indices.
 template <int Dim, class Shape>
 void scatter_gaps(const Particles<Dim>& P, std::size_t begin, std::size_t end,
                   const std::vector<MaterialConstants>& materials, const std::array<double, Dim>& corner, double h1,
-                  const double* distance, Gap* gap) {
+                  const double* distance, Gap<Dim>* gap) {
   constexpr int T = Tile<Dim, Shape>::side, S = Shape::support;
   for (std::size_t p = begin; p < end; ++p) {
     // Distance at the particle: linear between nodes, exact but for corners of the ground.
@@ -118,7 +162,7 @@ void scatter_gaps(const Particles<Dim>& P, std::size_t begin, std::size_t end,
       }
       clearance += weight * distance[at];
     }
-    const double size = Dim == 2 ? std::sqrt(P.volume[p]) : std::cbrt(P.volume[p]);
+    const double size = Dim == 2 ? std::sqrt(P.volume[p]) : std::cbrt(P.volume[p]), height = clearance;
     clearance -= 0.5 * size + closed_gap / h1;
     if (!(clearance < 2.0 / h1)) continue;
     int base[3] = {0, 0, 0};
@@ -126,10 +170,12 @@ void scatter_gaps(const Particles<Dim>& P, std::size_t begin, std::size_t end,
     for (int d = 0; d < Dim; ++d) base[d] = Shape::evaluate(X[d], w[d], unused, moment);
     const MaterialConstants& material = materials[static_cast<std::size_t>(P.material[p])];
     const double limit = soil_limit(material, P.strength[p]);
+    const auto away = away_from_ground<Dim, Shape>(distance, cell, f);
+    const CoveredGround<Dim> covered(X, size * h1, height * h1, away);
     Traction on_ground;
     double held = 0.0;
     if (const double most = most_drag(material, limit, P.strength[p], P.plastic_strain[p]); most > 0.0) {
-      on_ground = traction_of<Dim>(P, p, away_from_ground<Dim, Shape>(distance, cell, f));
+      on_ground = traction_of<Dim>(P, p, away);
       held = std::min(on_ground.shear, most);
     }
     for (int k = 0; k < (Dim == 3 ? S : 1); ++k)
@@ -138,12 +184,14 @@ void scatter_gaps(const Particles<Dim>& P, std::size_t begin, std::size_t end,
           const double weight = w[0][i] * w[1][j] * (Dim == 3 ? w[2][k] : 1.0);
           if (weight <= 0.0) continue;
           const double volume = weight * P.volume[p];
-          gap[((base[2] + k) * T + base[1] + j) * T + base[0] + i] += Gap{.value = clearance,
-                                                                          .volume = volume,
-                                                                          .strength = volume * limit,
-                                                                          .shear = volume * on_ground.shear,
-                                                                          .held = volume * held,
-                                                                          .pressure = volume * on_ground.pressure};
+          gap[((base[2] + k) * T + base[1] + j) * T + base[0] + i] +=
+              Gap<Dim>{.value = clearance,
+                       .volume = volume,
+                       .strength = volume * limit,
+                       .shear = volume * on_ground.shear,
+                       .held = volume * held,
+                       .pressure = volume * on_ground.pressure,
+                       .cover = covered.from(base[0] + i, base[1] + j, base[2] + k)};
         }
   }
 }

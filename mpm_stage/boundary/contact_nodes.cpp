@@ -24,7 +24,7 @@ void ContactNodes<Dim>::update(const BlockGrid<Dim>& grid) {
       // A particle within two cells of a node in contact, and the nodes around it, count as near.
       if (terrain_.distance(x0 + half, y0 + half) < reach_ + 4.0 * h + 1.4143 * half) {
         it->second = static_cast<std::ptrdiff_t>(contacts_.size());
-        const GroundSurface<B> surface(terrain_, x0, y0, h);
+        const GroundSurface<B, GroundShare<Dim>::bins> surface(terrain_, x0, y0, h);
         for (int n = 0; n < Block<Dim>::nodes; ++n) {
           const int i = n % B, j = n / B % B;
           NodeContact node;
@@ -34,7 +34,13 @@ void ContactNodes<Dim>::update(const BlockGrid<Dim>& grid) {
             node.beside = terrain_.contacts(x, y, far, node.point, node.adhere) > 0;
           contacts_.push_back(node);
           distances_.push_back(terrain_.distance(x, y));
-          surfaces_.push_back(Dim == 3 ? surface[j * B + i] * h : surface[j * B + i]);
+          const double width = Dim == 3 ? h : 1.0;
+          GroundShare<Dim> share;
+          share.axis = std::fabs(node.point[0].normal[0]) > std::fabs(node.point[0].normal[1]) ? 1 : 0;
+          share.whole = surface[j * B + i] * width;
+          share.part = surface.parts(j * B + i, share.axis);
+          for (float& part : share.part) part *= static_cast<float>(width);
+          surfaces_.push_back(share);
         }
       }
     }

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "mpm_stage/boundary/ground_cover.hpp"
 #include "mpm_stage/boundary/terrain.hpp"
 #include "mpm_stage/grid/block_grid.hpp"
 
@@ -38,8 +39,8 @@ class ContactNodes {
   }
   // Signed distance (m) of the same nodes.
   const double* distances(std::size_t a) const { return distances_.data() + block_start_[a]; }
-  // What they stand for of the ground's surface, m, in 3-D m2.
-  const double* surfaces(std::size_t a) const { return surfaces_.data() + block_start_[a]; }
+  // What they stand for of the ground's surface.
+  const GroundShare<Dim>* surfaces(std::size_t a) const { return surfaces_.data() + block_start_[a]; }
   // Whether occupied block b or a neighbour of it has nodes near the ground.
   bool near_ground(std::size_t b) const { return !near_.empty() && near_[b]; }
 
@@ -49,7 +50,8 @@ class ContactNodes {
   std::unordered_map<std::uint64_t, std::ptrdiff_t> known_;
   std::vector<std::ptrdiff_t> block_start_;
   std::vector<NodeContact> contacts_;
-  std::vector<double> distances_, surfaces_;
+  std::vector<double> distances_;
+  std::vector<GroundShare<Dim>> surfaces_;
   std::vector<std::uint8_t> near_;
   std::vector<std::array<int, Block<Dim>::neighbours>> around_;
 };

@@ -3,7 +3,8 @@
 //
 // The surface's normal n goes from the centre of body i to that of j unless soil that does not flow shows the surface
 // better. Its area is the part of it that is the node's: the larger of the two bodies' G . n, for beside a layer
-// thinner than the node's reach, only the other one shows it whole.
+// thinner than the node's reach, only the other one shows it whole. Of that counts what the other body lies on: beyond
+// a slab's end the bed shows its surface as well.
 #pragma once
 
 #include <algorithm>
@@ -47,6 +48,7 @@ struct BodyShape {
   Vector outward{};       // m2, sum of G of the nodes around: the direction that the surface faces
   double faces = 0.0;     // m2, sum of their |G|
   double strength = 0.0;  // Pa
+  Vector cover{};         // 1, share of the node's reach along each axis that the body covers
   bool firm = false;      // soil that does not flow: its particles show its surface best
 
   // 1 where the surface around the node is a plane, less at corners (0.7 where it turns by 90 deg) and of thin plates.
@@ -62,6 +64,7 @@ struct BodyShape {
       centre[d] = (volume * centre[d] + o.volume * o.centre[d]) / V;
       surface[d] += o.surface[d];
       outward[d] += o.outward[d];
+      cover[d] = std::max(cover[d], o.cover[d]);
     }
     faces += o.faces;
     strength = (volume * strength + o.volume * o.strength) / V;
@@ -80,6 +83,7 @@ BodyShape<Dim> body_shape(const InterfaceNode& sums, const SurfaceAround<Dim>& a
     body.centre[d] = sums.first[1 + d] / body.volume;
     body.surface[d] = sums.second[1 + d];
     body.outward[d] = around.outward[d];
+    body.cover[d] = InterfaceNode::Line::share(InterfaceNode::Line::closed(sums.cover[static_cast<std::size_t>(d)]));
   }
   return body;
 }
@@ -149,13 +153,35 @@ class ContactSurface {
     if (sign * along<Dim>(surface, normal_) <= 0.5 * size) return;
     for (int d = 0; d < Dim; ++d) normal_[d] = sign * surface[d] / size;
   }
+  // Share of the surface of `body` that `other` lies beside: how far it covers the node's reach along the surface
+  // (along the axes nearest to that), over how far a half-space beyond a plane with this tilt would.
+  template <class Shape>
+  double share_beside(const BodyShape<Dim>& body, const BodyShape<Dim>& other, const HalfSpaces<Shape>& half,
+                      double h) const {
+    constexpr double reach = InterfaceNode::Line::reach, least = 0.2;
+    int across = 0;
+    double cell = 1.0, share = 1.0;
+    for (int d = 0; d < Dim; ++d) {
+      cell *= h;
+      if (std::fabs(normal_[d]) > std::fabs(normal_[across])) across = d;
+    }
+    // The plane lies `offset` (cells) from the node; where it leaves the reach across the surface, nothing is beyond.
+    const double offset = half.offset(body.volume / cell), room = reach * std::fabs(normal_[across]) - offset;
+    for (int d = 0; d < Dim; ++d) {
+      if (d == across) continue;
+      const double tilt = std::fabs(normal_[d]);
+      const double whole = reach * tilt > room ? 1.0 - spline_up_to(-room / tilt) : 1.0;
+      share *= std::min(1.0, other.cover[d] / std::max(least, whole));
+    }
+    return share;
+  }
   // m2, of the surface between the bodies that is the node's. Where one of them is soil that does not flow, its
   // particles show it best, unless it is a plate so thin that the node sees its other surface, too.
   template <class Shape>
   double surface_of_both(const BodyShape<Dim>& i, const BodyShape<Dim>& j, const HalfSpaces<Shape>& half,
                          double h) const {
-    const double of_i = std::max(0.0, along<Dim>(i.surface, normal_));
-    const double of_j = std::max(0.0, -along<Dim>(j.surface, normal_));
+    const double of_i = std::max(0.0, along<Dim>(i.surface, normal_)) * share_beside(i, j, half, h);
+    const double of_j = std::max(0.0, -along<Dim>(j.surface, normal_)) * share_beside(j, i, half, h);
     if (i.firm != j.firm && flatness(i.firm ? i : j, half, h) > 0.7) return i.firm ? of_i : of_j;
     return std::max(of_i, of_j);
   }

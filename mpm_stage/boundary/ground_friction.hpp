@@ -53,8 +53,10 @@ inline void smooth_grip(const NodeContact& contact, double mass, double dt, doub
   grip.friction = smoothed * mass * dt;
 }
 
-// N s, what the soil at a node carries in a step on the part of the ground's surface (m, m2) that is the node's.
-inline double carried_by_soil(const Gap& soil, double surface, double dt) {
+// N s, what the soil at a node carries in a step on the part of the ground's surface (m, m2) that is the node's and
+// under soil.
+template <int Dim>
+double carried_by_soil(const Gap<Dim>& soil, double surface, double dt) {
   return soil.volume > 0.0 ? dt * surface * soil.strength / soil.volume : no_soil_limit;
 }
 
@@ -64,7 +66,8 @@ inline double carried_by_soil(const Gap& soil, double surface, double dt) {
 // into the ground: a slab with a factor of safety of 1.05 ran away at 11 m/s in 8 s where the ground lay 0.45 cells
 // over a row of nodes. (Frictional soil presses on fewer nodes by as much more.) `soil` is what is known of the soil at
 // the node, `mass` (kg) the node's, `carried` (N s) what the soil carries there.
-inline NodeGrip grip_beside(const NodeContact& contact, const Gap& soil, double mass, double carried) {
+template <int Dim>
+NodeGrip grip_beside(const NodeContact& contact, const Gap<Dim>& soil, double mass, double carried) {
   NodeGrip grip;
   const bool limited = soil.volume > 0.0 && soil.strength < smallest_unlimited * soil.volume;
   if (!limited) return grip;
@@ -75,11 +78,13 @@ inline NodeGrip grip_beside(const NodeContact& contact, const Gap& soil, double 
 }
 
 // N s, by which the ground brakes soil that sticks to it (phi = 0 soil whose strength softens or grows with the rate,
-// fluids, cohesive frictional soil), at such a node: traction along it on what is the node's of the surface (m, m2).
+// fluids, cohesive frictional soil), at such a node: traction along it on what is the node's of the surface (m, m2)
+// and under soil.
 // Soil sticks as long as that is less than Coulomb's friction; where it slides, nodes in contact brake it with all of
 // its weight. Between half and three quarters of Coulomb's friction the drag fades, since tractions of particles
 // scatter.
-inline double drag_beside(const NodeContact& contact, const Gap& soil, double surface, double dt) {
+template <int Dim>
+double drag_beside(const NodeContact& contact, const Gap<Dim>& soil, double surface, double dt) {
   if (!(soil.held > 0.0)) return 0.0;
   const double coulomb = contact.point[0].friction * soil.pressure;
   const double reserve = contact.adhere ? 1.0 : coulomb > soil.shear ? 1.0 - soil.shear / coulomb : 0.0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -13,7 +14,7 @@ namespace tailrun::mpm {
 
 // The B x B nodes from (x0, y0) on, x fastest, with weights of quadratic B-splines whatever the scene's shape
 // functions.
-template <int B>
+template <int B, int Bins>
 class GroundSurface {
  public:
   GroundSurface(const Terrain& terrain, double x0, double y0, double h) : h_(h) {
@@ -23,13 +24,19 @@ class GroundSurface {
 
   // m, of the ground that is node's own; per metre in the third direction in 3-D
   double operator[](int node) const { return length_[node]; }
+  // The same, of it what lies in each of Bins equal parts of the three cells around the node along x or y (axis 1).
+  const std::array<float, Bins>& parts(int node, int axis) const { return parts_[axis][node]; }
 
  private:
   static constexpr int margin = 3;  // nodes around the block, so that coordinates are positive
-  static constexpr double pieces_per_cell = 8.0;
+  static constexpr double pieces_per_cell = 16.0;
   static constexpr double low = -1.5, high = B + 0.5;  // cells from (x0, y0), within reach of the block's nodes
 
-  // action(node, weight) for the block's nodes around (x, y), cells from (x0, y0).
+  static std::size_t bin(double cells) {
+    return static_cast<std::size_t>(std::clamp((cells + 1.5) * (Bins / 3.0), 0.0, Bins - 1.0));
+  }
+
+  // action(node, weight, x, y from the node) for the block's nodes around (x, y), all in cells from (x0, y0).
   template <class Action>
   static void around(double x, double y, Action action) {
     double wx[3], wy[3], unused[3], moment[3];
@@ -38,7 +45,7 @@ class GroundSurface {
     for (int j = 0; j < 3; ++j)
       for (int i = 0; i < 3; ++i) {
         const int I = i0 + i - margin, J = j0 + j - margin;
-        if (I >= 0 && I < B && J >= 0 && J < B) action(J * B + I, wx[i] * wy[j]);
+        if (I >= 0 && I < B && J >= 0 && J < B) action(J * B + I, wx[i] * wy[j], x - I, y - J);
       }
   }
 
@@ -61,12 +68,18 @@ class GroundSurface {
     for (double k = std::floor(from * pieces); from < to && k < to * pieces; ++k) {
       const double at = (k + 0.5) / pieces;
       if (at < from || at >= to) continue;
-      around(ax + at * tx, ay + at * ty, [&](int n, double w) { length_[n] += w * cells / pieces * h_; });
+      around(ax + at * tx, ay + at * ty, [&](int n, double w, double x, double y) {
+        const double length = w * cells / pieces * h_;
+        length_[n] += length;
+        parts_[0][n][bin(x)] += static_cast<float>(length);
+        parts_[1][n][bin(y)] += static_cast<float>(length);
+      });
     }
   }
 
   double h_;
   double length_[B * B] = {};
+  std::array<float, Bins> parts_[2][B * B] = {};
 };
 
 }  // namespace tailrun::mpm

@@ -25,15 +25,4 @@ struct WallNodes {
   }
 };
 
-// Share of a node's cells that lie inside the walls, for a node that has none beyond them.
-template <int Dim>
-inline double share_inside(const WallNodes<Dim>& walls, const std::array<int, Dim>& node) {
-  double share = 1.0;
-  if (!walls.any) return share;
-  for (int d = 0; d < Dim; ++d)
-    for (const auto& side : walls.side[d])
-      if (side.kind != WallKind::open && node[d] == side.node) share *= 0.5;
-  return share;
-}
-
 }  // namespace tailrun::mpm

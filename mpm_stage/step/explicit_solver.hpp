@@ -142,7 +142,7 @@ class ExplicitSolver final : public Solver<Dim> {
     const Vec4 *sum = nullptr, *force = nullptr;
   };
   // How far material of a field is from the ground, at the nodes of a block near it.
-  using NodeGaps = std::optional<std::array<Gap, block_nodes>>;
+  using NodeGaps = std::optional<std::array<Gap<Dim>, block_nodes>>;
   // Fields, as bits, at the nodes of a block.
   using NodeFields = std::array<std::uint8_t, block_nodes>;
   // The bodies that meet at a node, and which one each field belongs to (-1: the field is not there).
@@ -355,7 +355,7 @@ class ExplicitSolver final : public Solver<Dim> {
   std::vector<std::array<double, Dim>> damped_;  // N s, taken by local damping in this step; per active block
   AlignedVector<PatchSum> averaged_tiles_;
   AlignedVector<PatchFit> averaged_;
-  std::vector<Gap> gap_tiles_;
+  std::vector<Gap<Dim>> gap_tiles_;
   std::vector<NodeGrip> grip_;  // per active block
   // FMPM: the latest term of the velocity and the mass matrix times it, per active block; what contact holds.
   AlignedVector<Vec4> term_, products_;

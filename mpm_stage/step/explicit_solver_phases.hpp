@@ -257,8 +257,8 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::scatter_ground_gaps(std::size_
         grid_, b, [this](std::size_t a) { return ground_.of_block(a) ? ground_.distances(a) : nullptr; }, no_gap_known,
         distance);
   fields_.for_each_span(b, [&](const FieldSpan& span) {
-    Gap* gap = gap_tiles_.data() + fields_.tile(span.field, b) * tile_nodes;
-    std::fill(gap, gap + tile_nodes, Gap{});
+    Gap<Dim>* gap = gap_tiles_.data() + fields_.tile(span.field, b) * tile_nodes;
+    std::fill(gap, gap + tile_nodes, Gap<Dim>{});
     if (near) scatter_gaps<Dim, Shape>(P_, span.begin, span.end, constants_, corner(b), h1_, distance, gap);
   });
 }

@@ -210,9 +210,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::touch_boundaries(int f, std::s
     }
     std::array<double, Dim> v = velocity_at(k), before{};
     const std::array<double, Dim> pushed = v;
-    const auto surface = [&] {
-      return ground_.surfaces(a)[n] * share_inside<Dim>(wall_nodes_, grid_.node_index(a, n));
-    };
+    const auto surface = [&] { return ground_.surfaces(a)[n].under((*gap)[n].cover); };
     if (contact && contact[n].beside && options_.soil_limits_friction) {
       grip_[k] = grip_beside(contact[n], (*gap)[n], m, carried_by_soil((*gap)[n], surface(), dt));
       if (const double drag = drag_beside(contact[n], (*gap)[n], surface(), dt); drag > 0.0) {

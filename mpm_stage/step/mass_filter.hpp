@@ -177,7 +177,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::find_held(int f, std::size_t a
   const NodeContact* contact = ground_.of_block(a);
   if (!contact && !wall_nodes_.any) return;
   const double slack = 1e-12 * fastest_wave_;
-  Gap gap[block_nodes];
+  Gap<Dim> gap[block_nodes];
   if (contact) gather_tiles<Dim, Shape>(fields_.around(f, a), gap_tiles_.data() + fields_.tile(f, 0) * tile_nodes, gap);
   for (int n = 0; n < block_nodes; ++n) {
     const std::size_t k = node_of(f, a) + static_cast<std::size_t>(n);

@@ -3,15 +3,18 @@
 //
 // For the material of one field, with V_p the particles' volumes and w their weights at node i:
 //   V = sum V_p w,   V c = sum V_p w (x_p - x_i),   G = sum V_p grad w,   V s = sum V_p w s_p.
+// Beside that, what the particles cover along each axis (covered_bins.hpp).
 // G is the surface of the field's material times its outward normal, as the node sees it: inside the sums vanish, and
 // over all nodes they add up to the whole surface.
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
 #include "mpm_stage/grid/block_grid.hpp"
+#include "mpm_stage/grid/covered_bins.hpp"
 #include "mpm_stage/grid/shape_functions.hpp"
 #include "mpm_stage/grid/simd.hpp"
 #include "mpm_stage/material/soil_limit.hpp"
@@ -20,12 +23,20 @@
 namespace tailrun::mpm {
 
 struct InterfaceNode {
+  using Line = CoveredBins<24>;
   Vec4 first;   // m3, m4: V and V c
   Vec4 second;  // m3 Pa, m2: V s and G
+  std::array<std::uint32_t, 3> cover{};
   InterfaceNode& operator+=(const InterfaceNode& o) {
     first += o.first;
     second += o.second;
+    for (std::size_t d = 0; d < cover.size(); ++d) cover[d] |= o.cover[d];
     return *this;
+  }
+  void add_cover(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    cover[0] |= x;
+    cover[1] |= y;
+    cover[2] |= z;
   }
 };
 
@@ -38,12 +49,20 @@ void scatter_interface(const MaterialConstants& k, const Particles<Dim>& P, std:
   constexpr int S = Shape::support, T = Tile<Dim, Shape>::side;
   const double h = 1.0 / h1;
   for (std::size_t p = begin; p < end; ++p) {
-    double w[3][S], d[3][S], m[3][S];
-    int at = 0;
-    for (int a = 0, stride = 1; a < Dim; ++a, stride *= T)
-      at += stride * Shape::evaluate((P.position[a][p] - corner[a]) * h1, w[a], d[a], m[a]);
+    double w[3][S], d[3][S], m[3][S], X[3];
+    int at = 0, base[3];
+    for (int a = 0, stride = 1; a < Dim; ++a, stride *= T) {
+      X[a] = (P.position[a][p] - corner[a]) * h1;
+      base[a] = Shape::evaluate(X[a], w[a], d[a], m[a]);
+      at += stride * base[a];
+    }
     if (!wanted[at]) continue;
-    const double V = P.volume[p], s = V * interface_strength(k, P.strength[p], P.plastic_strain[p]);
+    const double V = P.volume[p], half = 0.5 * h1 * (Dim == 2 ? std::sqrt(V) : std::cbrt(V));
+    std::uint32_t bins[3][S] = {};
+    for (int a = 0; a < Dim; ++a)
+      for (int i = 0; i < S; ++i)
+        bins[a][i] = static_cast<std::uint32_t>(InterfaceNode::Line::under(X[a] - base[a] - i, half));
+    const double s = V * interface_strength(k, P.strength[p], P.plastic_strain[p]);
     const Vec4 scale = {V, -V * h, -V * h, -V * h}, slope_scale = {s, V * h1, V * h1, V * h1};
     Vec4 first_x[S], second_x[S], first_y[S], second_y[S];
     for (int i = 0; i < S; ++i) {
@@ -58,6 +77,7 @@ void scatter_interface(const MaterialConstants& k, const Particles<Dim>& P, std:
         for (int i = 0; i < S; ++i) {
           from[j * T + i].first += first_x[i] * first_y[j];
           from[j * T + i].second += second_x[i] * second_y[j];
+          from[j * T + i].add_cover(bins[0][i], bins[1][j], 0);
         }
     } else {
       for (int l = 0; l < S; ++l)
@@ -67,6 +87,7 @@ void scatter_interface(const MaterialConstants& k, const Particles<Dim>& P, std:
           for (int i = 0; i < S; ++i) {
             from[(l * T + j) * T + i].first += first_x[i] * first_z;
             from[(l * T + j) * T + i].second += second_x[i] * second_z;
+            from[(l * T + j) * T + i].add_cover(bins[0][i], bins[1][j], bins[2][l]);
           }
         }
     }

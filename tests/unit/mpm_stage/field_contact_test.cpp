@@ -34,6 +34,7 @@ Body side(double sign, double mass, std::array<double, 2> v, double strength) {
   body.shape.centre = {0.5 * sign * h * half.centres_apart(0.5), 0.0};
   body.shape.surface = {-sign * h * half.slice(0.5), 0.0};
   body.shape.strength = strength;
+  body.shape.cover = {0.5, 1.0};
   return body;
 }
 
@@ -99,6 +100,13 @@ TEST_CASE("phi = 0 soil brakes by its strength times the surface, and not at all
   pair.press();
   rub(pair, weak, strong);
   CHECK(weak.v[1] == doctest::Approx(1.0 - dt * strength * area / 1e3).epsilon(1e-6));
+
+  auto half_as_wide = side(-1.0, 1e3, {0.0, 1.0}, strength);
+  half_as_wide.shape.cover[1] = 0.5;
+  ContactPair<2> at_its_end = between(half_as_wide, strong, {});
+  at_its_end.press();
+  rub(at_its_end, half_as_wide, strong);
+  CHECK(half_as_wide.v[1] == doctest::Approx(1.0 - 0.5 * dt * strength * area / 1e3).epsilon(1e-6));
 
   auto apart = side(-1.0, 1e3, {0.1, 1.0}, strength);
   apart.shape.centre[0] -= 0.5 * h;

@@ -189,7 +189,7 @@ TEST_CASE("nodes in contact stand for all of the ground's surface, whatever its 
       if (!nodes.of_block(a)) continue;
       for (int n = 0; n < Block<2>::nodes; ++n) {
         const auto index = grid.node_index(a, n);
-        const double along = h * (index[0] * c + index[1] * s), surface = nodes.surfaces(a)[n];
+        const double along = h * (index[0] * c + index[1] * s), surface = nodes.surfaces(a)[n].whole;
         if (std::fabs(along) < 5.0) within += surface;
         if (surface == 0.0) distance_of_others = std::min(distance_of_others, std::fabs(nodes.distances(a)[n]));
       }
