@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "mpm_stage/boundary/contact_nodes.hpp"
-#include "mpm_stage/boundary/ground_cover.hpp"
+#include "mpm_stage/boundary/covered_ground.hpp"
 #include "mpm_stage/material/soil_limit.hpp"
 
 namespace tailrun::mpm {
@@ -96,46 +96,6 @@ std::array<double, Dim> away_from_ground(const double* distance, const int* cell
   return gradient;
 }
 
-// What a particle covers of the ground's surface, as the nodes around see it.
-template <int Dim>
-class CoveredGround {
- public:
-  // `X` is the particle's place in the tile, `size` its width and `height` its distance from the ground, all in cells;
-  // `away` is the direction in which the distance grows.
-  CoveredGround(const double* X, double size, double height, const std::array<double, Dim>& away) {
-    const double length = std::hypot(away[0], away[1]);
-    lies_ = height < GroundCover<Dim>::thickness && length > 0.0;
-    if (!lies_) return;
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      foot_[axis] = X[axis] - height * away[axis] / length;
-      // Along the slope it is as wide as on level ground; nodes look along the axis that is nearer to the slope.
-      half_[axis] = 0.5 * size * std::max(std::sqrt(0.5), std::fabs(away[1 - axis]) / length);
-    }
-    if constexpr (Dim == 3) {
-      z_ = X[2];
-      half_z_ = 0.5 * size;
-    }
-  }
-
-  // As seen from node (i, j, k) of the tile.
-  GroundCover<Dim> from(int i, int j, [[maybe_unused]] int k) const {
-    GroundCover<Dim> cover;
-    if (!lies_) return cover;
-    cover.along = {Line::under(foot_[0] - i, half_[0]), Line::under(foot_[1] - j, half_[1])};
-    if constexpr (Dim == 3) {
-      const auto across = Line::under(z_ - k, half_z_);
-      for (auto& bits : cover.along) bits = GroundCover<3>::rows(bits, across);
-    }
-    return cover;
-  }
-
- private:
-  using Line = typename GroundCover<Dim>::Line;
-  bool lies_;
-  std::array<double, 2> foot_{}, half_{};
-  double z_ = 0.0, half_z_ = 0.0;
-};
-
 // `distance` is the tile of the nodes' signed distances, infinity where unknown; adds to the tile `gap`. The materials
 // are those of the particles' indices.
 template <int Dim, class Shape>
@@ -171,7 +131,7 @@ void scatter_gaps(const Particles<Dim>& P, std::size_t begin, std::size_t end,
     const MaterialConstants& material = materials[static_cast<std::size_t>(P.material[p])];
     const double limit = soil_limit(material, P.strength[p]);
     const auto away = away_from_ground<Dim, Shape>(distance, cell, f);
-    const CoveredGround<Dim> covered(X, size * h1, height * h1, away);
+    const CoveredGround<Dim, S> covered(X, base, size * h1, height * h1, away);
     Traction on_ground;
     double held = 0.0;
     if (const double most = most_drag(material, limit, P.strength[p], P.plastic_strain[p]); most > 0.0) {
@@ -184,14 +144,13 @@ void scatter_gaps(const Particles<Dim>& P, std::size_t begin, std::size_t end,
           const double weight = w[0][i] * w[1][j] * (Dim == 3 ? w[2][k] : 1.0);
           if (weight <= 0.0) continue;
           const double volume = weight * P.volume[p];
-          gap[((base[2] + k) * T + base[1] + j) * T + base[0] + i] +=
-              Gap<Dim>{.value = clearance,
-                       .volume = volume,
-                       .strength = volume * limit,
-                       .shear = volume * on_ground.shear,
-                       .held = volume * held,
-                       .pressure = volume * on_ground.pressure,
-                       .cover = covered.from(base[0] + i, base[1] + j, base[2] + k)};
+          gap[((base[2] + k) * T + base[1] + j) * T + base[0] + i] += Gap<Dim>{.value = clearance,
+                                                                               .volume = volume,
+                                                                               .strength = volume * limit,
+                                                                               .shear = volume * on_ground.shear,
+                                                                               .held = volume * held,
+                                                                               .pressure = volume * on_ground.pressure,
+                                                                               .cover = covered.from(i, j, k)};
         }
   }
 }

@@ -28,12 +28,11 @@ struct GroundCover {
     return *this;
   }
 
-  // All pairs of a bin along the ground and one along z (3-D).
-  static Bits rows(Bits along_ground, Bits along_z) {
-    Bits pairs = 0;
-    for (int k = 0; k < bins; ++k)
-      if (along_z >> k & 1) pairs |= along_ground << k * bins;
-    return pairs;
+  // A factor that turns a line of bins into the same line in all rows of `along_z` (3-D).
+  static Bits rows_at(Bits along_z) {
+    Bits first_of_row = 0;
+    for (int k = 0; k < bins; ++k) first_of_row |= (along_z >> k & 1) << k * bins;
+    return first_of_row;
   }
 
   // Without the holes between particles.

@@ -53,11 +53,16 @@ inline void smooth_grip(const NodeContact& contact, double mass, double dt, doub
   grip.friction = smoothed * mass * dt;
 }
 
-// N s, what the soil at a node carries in a step on the part of the ground's surface (m, m2) that is the node's and
-// under soil.
+// Whether the soil at a node is known and carries no more than its strength.
 template <int Dim>
-double carried_by_soil(const Gap<Dim>& soil, double surface, double dt) {
-  return soil.volume > 0.0 ? dt * surface * soil.strength / soil.volume : no_soil_limit;
+bool is_limited(const Gap<Dim>& soil) {
+  return soil.volume > 0.0 && soil.strength < smallest_unlimited * soil.volume;
+}
+
+// N s, what the soil at a node carries in a step on the part of the ground's surface that is the node's and under soil.
+template <int Dim>
+double carried_by_soil(const Gap<Dim>& soil, const GroundShare<Dim>& ground, double dt) {
+  return is_limited(soil) ? dt * ground.under(soil.cover) * soil.strength / soil.volume : no_soil_limit;
 }
 
 // The grip of a node beyond contact's reach whose function the ground's surface still cuts: of phi = 0 soil it takes
@@ -69,8 +74,7 @@ double carried_by_soil(const Gap<Dim>& soil, double surface, double dt) {
 template <int Dim>
 NodeGrip grip_beside(const NodeContact& contact, const Gap<Dim>& soil, double mass, double carried) {
   NodeGrip grip;
-  const bool limited = soil.volume > 0.0 && soil.strength < smallest_unlimited * soil.volume;
-  if (!limited) return grip;
+  if (!is_limited(soil)) return grip;
   grip.mass = mass;
   grip.normal = contact.point[0].normal;
   grip.carried = carried;
@@ -78,17 +82,18 @@ NodeGrip grip_beside(const NodeContact& contact, const Gap<Dim>& soil, double ma
 }
 
 // N s, by which the ground brakes soil that sticks to it (phi = 0 soil whose strength softens or grows with the rate,
-// fluids, cohesive frictional soil), at such a node: traction along it on what is the node's of the surface (m, m2)
-// and under soil.
+// fluids, cohesive frictional soil), at such a node: traction along it on what is the node's of the surface and
+// under soil.
 // Soil sticks as long as that is less than Coulomb's friction; where it slides, nodes in contact brake it with all of
 // its weight. Between half and three quarters of Coulomb's friction the drag fades, since tractions of particles
 // scatter.
 template <int Dim>
-double drag_beside(const NodeContact& contact, const Gap<Dim>& soil, double surface, double dt) {
+double drag_beside(const NodeContact& contact, const Gap<Dim>& soil, const GroundShare<Dim>& ground, double dt) {
   if (!(soil.held > 0.0)) return 0.0;
   const double coulomb = contact.point[0].friction * soil.pressure;
   const double reserve = contact.adhere ? 1.0 : coulomb > soil.shear ? 1.0 - soil.shear / coulomb : 0.0;
-  return dt * surface * std::clamp(4.0 * reserve - 1.0, 0.0, 1.0) * soil.held / soil.volume;
+  const double share = std::clamp(4.0 * reserve - 1.0, 0.0, 1.0);
+  return share > 0.0 ? dt * ground.under(soil.cover) * share * soil.held / soil.volume : 0.0;
 }
 
 // m/s, the part of `v` along the ground.

@@ -210,10 +210,9 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::touch_boundaries(int f, std::s
     }
     std::array<double, Dim> v = velocity_at(k), before{};
     const std::array<double, Dim> pushed = v;
-    const auto surface = [&] { return ground_.surfaces(a)[n].under((*gap)[n].cover); };
     if (contact && contact[n].beside && options_.soil_limits_friction) {
-      grip_[k] = grip_beside(contact[n], (*gap)[n], m, carried_by_soil((*gap)[n], surface(), dt));
-      if (const double drag = drag_beside(contact[n], (*gap)[n], surface(), dt); drag > 0.0) {
+      grip_[k] = grip_beside(contact[n], (*gap)[n], m, carried_by_soil((*gap)[n], ground_.surfaces(a)[n], dt));
+      if (const double drag = drag_beside(contact[n], (*gap)[n], ground_.surfaces(a)[n], dt); drag > 0.0) {
         NodeGrip stuck;
         stuck.mass = m;
         stuck.normal = contact[n].point[0].normal;
@@ -226,7 +225,7 @@ void ExplicitSolver<Dim, Shape, Split, Transfer>::touch_boundaries(int f, std::s
       const double share = smoothing_share(dt * h1_ * fastest_wave_, dt * h1_ * sliding_speed<Dim>(contact[n], v));
       smooth_grip(contact[n], m, dt, share, smoothed_grip_[k], grip);
       grip.carried = grip.friction;
-      if (options_.soil_limits_friction) grip.carried = carried_by_soil((*gap)[n], surface(), dt);
+      if (options_.soil_limits_friction) grip.carried = carried_by_soil((*gap)[n], ground_.surfaces(a)[n], dt);
     }
     if (wall_nodes_.any) apply_walls<Dim>(wall_nodes_, grid_.node_index(a, n), m, v, sums);
     for (int d = 0; d < Dim; ++d) sums.impulse[d] += m * (v[d] - pushed[d]);

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mpm_stage/boundary/contact_gap.hpp"
+#include "mpm_stage/boundary/covered_ground.hpp"
 #include "mpm_stage/boundary/ground_surface.hpp"
 
 using namespace tailrun::mpm;
@@ -24,7 +24,8 @@ double covered(const std::vector<double>& places, double size) {
       GroundCover<2> soil;
       for (const double x : places) {
         const double X[2] = {x, 4.25};
-        soil |= CoveredGround<2>(X, size, 0.25, {0.0, 1.0}).from(i, j, 0);
+        const int node[2] = {i, j};
+        soil |= CoveredGround<2, 1>(X, node, size, 0.25, {0.0, 1.0}).from(0, 0, 0);
       }
       sum += share.under(soil);
     }
@@ -58,7 +59,8 @@ TEST_CASE("holes between particles are none, what lies two cells apart is") {
 
 TEST_CASE("what is more than a cell above the ground covers nothing") {
   const double X[2] = {5.0, 5.2};
-  CHECK(CoveredGround<2>(X, 0.5, 1.2, {0.0, 1.0}).from(5, 4, 0).along[0] == 0);
+  const int node[2] = {5, 4};
+  CHECK(CoveredGround<2, 1>(X, node, 0.5, 1.2, {0.0, 1.0}).from(0, 0, 0).along[0] == 0);
 }
 
 TEST_CASE("on a slope soil covers what lies across from it") {
@@ -73,7 +75,8 @@ TEST_CASE("on a slope soil covers what lies across from it") {
       GroundCover<2> soil;
       for (const double along : row(6.0, 8, 0.5)) {
         const double X[2] = {along * c + 0.25 * s, 8.0 - along * s + 0.25 * c};
-        soil |= CoveredGround<2>(X, 0.5, 0.25, {s, c}).from(i, j, 0);
+        const int node[2] = {i, j};
+        soil |= CoveredGround<2, 1>(X, node, 0.5, 0.25, {s, c}).from(0, 0, 0);
       }
       sum += share.under(soil);
     }
@@ -96,7 +99,8 @@ TEST_CASE("in three dimensions soil covers its own area") {
           for (const double x : row(from, 8, 0.5))
             for (const double z : row(from, 6, 0.5)) {
               const double X[3] = {x, 4.25, z};
-              soil |= CoveredGround<3>(X, 0.5, 0.25, {0.0, 1.0, 0.0}).from(i, j, k);
+              const int node[3] = {i, j, k};
+              soil |= CoveredGround<3, 1>(X, node, 0.5, 0.25, {0.0, 1.0, 0.0}).from(0, 0, 0);
             }
           sum += share.under(soil);
         }
