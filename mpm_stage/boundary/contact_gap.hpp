@@ -130,13 +130,17 @@ void scatter_gaps(const Particles<Dim>& P, std::size_t begin, std::size_t end,
     for (int d = 0; d < Dim; ++d) base[d] = Shape::evaluate(X[d], w[d], unused, moment);
     const MaterialConstants& material = materials[static_cast<std::size_t>(P.material[p])];
     const double limit = soil_limit(material, P.strength[p]);
-    const auto away = away_from_ground<Dim, Shape>(distance, cell, f);
-    const CoveredGround<Dim, S> covered(X, base, size * h1, height * h1, away);
+    const double most = most_drag(material, limit, P.strength[p], P.plastic_strain[p]);
+    CoveredGround<Dim, S> covered;  // asked for where strength limits what the ground holds
     Traction on_ground;
     double held = 0.0;
-    if (const double most = most_drag(material, limit, P.strength[p], P.plastic_strain[p]); most > 0.0) {
-      on_ground = traction_of<Dim>(P, p, away);
-      held = std::min(on_ground.shear, most);
+    if (limit < no_soil_limit || most > 0.0) {
+      const auto away = away_from_ground<Dim, Shape>(distance, cell, f);
+      covered = CoveredGround<Dim, S>(X, base, size * h1, height * h1, away);
+      if (most > 0.0) {
+        on_ground = traction_of<Dim>(P, p, away);
+        held = std::min(on_ground.shear, most);
+      }
     }
     for (int k = 0; k < (Dim == 3 ? S : 1); ++k)
       for (int j = 0; j < S; ++j)

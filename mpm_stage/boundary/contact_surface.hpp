@@ -42,14 +42,14 @@ struct SurfaceAround {
 template <int Dim>
 struct BodyShape {
   using Vector = std::array<double, Dim>;
-  double volume = 0.0;    // m3; 0: not known yet, for it has come since surfaces were found
-  Vector centre{};        // m, from the node
-  Vector surface{};       // m2, G
-  Vector outward{};       // m2, sum of G of the nodes around: the direction that the surface faces
-  double faces = 0.0;     // m2, sum of their |G|
-  double strength = 0.0;  // Pa
-  Vector cover{};         // 1, share of the node's reach along each axis that the body covers
-  bool firm = false;      // soil that does not flow: its particles show its surface best
+  double volume = 0.0;                   // m3; 0: not known yet, for it has come since surfaces were found
+  Vector centre{};                       // m, from the node
+  Vector surface{};                      // m2, G
+  Vector outward{};                      // m2, sum of G of the nodes around: the direction that the surface faces
+  double faces = 0.0;                    // m2, sum of their |G|
+  double strength = 0.0;                 // Pa
+  std::array<std::uint32_t, 3> cover{};  // of the node's reach along each axis (InterfaceNode)
+  bool firm = false;                     // soil that does not flow: its particles show its surface best
 
   // 1 where the surface around the node is a plane, less at corners (0.7 where it turns by 90 deg) and of thin plates.
   double plainness() const {
@@ -64,8 +64,8 @@ struct BodyShape {
       centre[d] = (volume * centre[d] + o.volume * o.centre[d]) / V;
       surface[d] += o.surface[d];
       outward[d] += o.outward[d];
-      cover[d] = std::max(cover[d], o.cover[d]);
     }
+    for (std::size_t d = 0; d < cover.size(); ++d) cover[d] |= o.cover[d];
     faces += o.faces;
     strength = (volume * strength + o.volume * o.strength) / V;
     volume = V;
@@ -79,11 +79,11 @@ BodyShape<Dim> body_shape(const InterfaceNode& sums, const SurfaceAround<Dim>& a
   body.volume = sums.first[0];
   body.strength = sums.second[0] / body.volume;
   body.faces = around.faces;
+  body.cover = sums.cover;
   for (int d = 0; d < Dim; ++d) {
     body.centre[d] = sums.first[1 + d] / body.volume;
     body.surface[d] = sums.second[1 + d];
     body.outward[d] = around.outward[d];
-    body.cover[d] = InterfaceNode::Line::share(InterfaceNode::Line::closed(sums.cover[static_cast<std::size_t>(d)]));
   }
   return body;
 }
@@ -126,8 +126,8 @@ class ContactSurface {
     // what is there of the firm body is the rim of its reach, and must not be taken along.
     presses_ = i.firm == j.firm || std::fabs(along<Dim>(i.firm ? i.centre : j.centre, normal_)) <= rim * h;
     gap_ = distance - h * half.centres_apart(j.volume / (i.volume + j.volume)) - open_gap * h;
-    area_ = surface_of_both(i, j, half, h);
     strength_ = std::min(i.strength, j.strength);
+    if (strength_ < no_soil_limit) area_ = surface_of_both(i, j, half, h);
   }
 
   bool known() const { return known_; }
@@ -158,7 +158,8 @@ class ContactSurface {
   template <class Shape>
   double share_beside(const BodyShape<Dim>& body, const BodyShape<Dim>& other, const HalfSpaces<Shape>& half,
                       double h) const {
-    constexpr double reach = InterfaceNode::Line::reach, least = 0.2;
+    using Line = InterfaceNode::Line;
+    constexpr double reach = Line::reach, least = 0.2;
     int across = 0;
     double cell = 1.0, share = 1.0;
     for (int d = 0; d < Dim; ++d) {
@@ -171,7 +172,8 @@ class ContactSurface {
       if (d == across) continue;
       const double tilt = std::fabs(normal_[d]);
       const double whole = reach * tilt > room ? 1.0 - spline_up_to(-room / tilt) : 1.0;
-      share *= std::min(1.0, other.cover[d] / std::max(least, whole));
+      const double covered = Line::share(Line::closed(other.cover[static_cast<std::size_t>(d)]));
+      share *= std::min(1.0, covered / std::max(least, whole));
     }
     return share;
   }

@@ -13,6 +13,8 @@ namespace tailrun::mpm {
 template <int Dim, int Support>
 class CoveredGround {
  public:
+  // Nothing.
+  CoveredGround() = default;
   // `X` is the particle's place in the tile, `size` its width and `height` its distance from the ground, all in cells;
   // `away` is the direction in which the distance grows.
   CoveredGround(const double* X, const int* base, double size, double height, const std::array<double, Dim>& away) {
@@ -22,11 +24,12 @@ class CoveredGround {
       const double foot = X[axis] - height * away[axis] / length;
       // Along the slope it is as wide as on level ground; nodes look along the axis that is nearer to the slope.
       const double half = 0.5 * size * std::max(std::sqrt(0.5), std::fabs(away[1 - axis]) / length);
-      for (int n = 0; n < Support; ++n) along_[axis][n] = Line::under(foot - base[axis] - n, half);
+      Line::template under<Support>(foot - base[axis], half, along_[axis]);
     }
-    if constexpr (Dim == 3)
-      for (int n = 0; n < Support; ++n)
-        across_[n] = GroundCover<3>::rows_at(Line::under(X[2] - base[2] - n, 0.5 * size));
+    if constexpr (Dim == 3) {
+      Line::template under<Support>(X[2] - base[2], 0.5 * size, across_);
+      for (auto& line : across_) line = GroundCover<3>::rows_at(line);
+    }
   }
 
   // As seen from node (i, j, k), counted from `base`.

@@ -33,10 +33,10 @@ struct InterfaceNode {
     for (std::size_t d = 0; d < cover.size(); ++d) cover[d] |= o.cover[d];
     return *this;
   }
-  void add_cover(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
-    cover[0] |= x;
-    cover[1] |= y;
-    cover[2] |= z;
+  void add_cover(Line::Bits x, Line::Bits y, Line::Bits z) {
+    cover[0] |= static_cast<std::uint32_t>(x);
+    cover[1] |= static_cast<std::uint32_t>(y);
+    cover[2] |= static_cast<std::uint32_t>(z);
   }
 };
 
@@ -58,10 +58,8 @@ void scatter_interface(const MaterialConstants& k, const Particles<Dim>& P, std:
     }
     if (!wanted[at]) continue;
     const double V = P.volume[p], half = 0.5 * h1 * (Dim == 2 ? std::sqrt(V) : std::cbrt(V));
-    std::uint32_t bins[3][S] = {};
-    for (int a = 0; a < Dim; ++a)
-      for (int i = 0; i < S; ++i)
-        bins[a][i] = static_cast<std::uint32_t>(InterfaceNode::Line::under(X[a] - base[a] - i, half));
+    InterfaceNode::Line::Bits bins[3][S] = {};
+    for (int a = 0; a < Dim; ++a) InterfaceNode::Line::under<S>(X[a] - base[a], half, bins[a]);
     const double s = V * interface_strength(k, P.strength[p], P.plastic_strain[p]);
     const Vec4 scale = {V, -V * h, -V * h, -V * h}, slope_scale = {s, V * h1, V * h1, V * h1};
     Vec4 first_x[S], second_x[S], first_y[S], second_y[S];

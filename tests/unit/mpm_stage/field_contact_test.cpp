@@ -34,7 +34,8 @@ Body side(double sign, double mass, std::array<double, 2> v, double strength) {
   body.shape.centre = {0.5 * sign * h * half.centres_apart(0.5), 0.0};
   body.shape.surface = {-sign * h * half.slice(0.5), 0.0};
   body.shape.strength = strength;
-  body.shape.cover = {0.5, 1.0};
+  const auto all = static_cast<std::uint32_t>(InterfaceNode::Line::below(24));
+  body.shape.cover = {sign < 0.0 ? all & 0xfff : all & ~0xfffU, all, 0};
   return body;
 }
 
@@ -102,7 +103,7 @@ TEST_CASE("phi = 0 soil brakes by its strength times the surface, and not at all
   CHECK(weak.v[1] == doctest::Approx(1.0 - dt * strength * area / 1e3).epsilon(1e-6));
 
   auto half_as_wide = side(-1.0, 1e3, {0.0, 1.0}, strength);
-  half_as_wide.shape.cover[1] = 0.5;
+  half_as_wide.shape.cover[1] = 0xfff;
   ContactPair<2> at_its_end = between(half_as_wide, strong, {});
   at_its_end.press();
   rub(at_its_end, half_as_wide, strong);
