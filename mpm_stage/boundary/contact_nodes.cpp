@@ -36,7 +36,10 @@ void ContactNodes<Dim>::update(const BlockGrid<Dim>& grid) {
           distances_.push_back(terrain_.distance(x, y));
           const double width = Dim == 3 ? h : 1.0;
           GroundShare<Dim> share;
-          share.axis = std::fabs(node.point[0].normal[0]) > std::fabs(node.point[0].normal[1]) ? 1 : 0;
+          if (node.count > 0 || node.beside) {
+            const auto& normal = node.point[0].normal;
+            share.axis = std::fabs(normal[0]) > std::fabs(normal[1]) ? 1 : 0;
+          }
           share.whole = surface[j * B + i] * width;
           share.part = surface.parts(j * B + i, share.axis);
           for (float& part : share.part) part *= static_cast<float>(width);
