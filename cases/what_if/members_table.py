@@ -99,6 +99,11 @@ def text_of(value):
     return value if isinstance(value, str) else json.dumps(value)
 
 
+def text_of_choice(p, value):
+    """What tables and pictures call a parameter's value."""
+    return p["labels"][p["choices"].index(value)] if p.get("labels") and value in p["choices"] else text_of(value)
+
+
 def used_headlines(table):
     return [headline for headline in HEADLINES if np.isfinite(table.numbers[headline.name]).any()]
 
@@ -110,7 +115,7 @@ def write_csv(path, table):
         writer.writerow(["member", "state", "key", *table.values, *(headline.name for headline in headlines), "stop_reason"])
         for row, member in enumerate(table.plan["members"]):
             numbers = [table.numbers[headline.name][row] for headline in headlines]
-            writer.writerow([member["number"], table.state[row], member["keys"]["mpm"][:plan.KEY_LENGTH], *(text_of(v[row]) for v in table.values.values()),
+            writer.writerow([member["number"], table.state[row], member["keys"]["mpm"][:plan.KEY_LENGTH], *(text_of_choice(p, table.values[p["name"]][row]) for p in table.parameters),
                              *("" if np.isnan(number) else f"{number:.12g}" for number in numbers), table.content[row].get("stop_reason", "")])
 
 
@@ -143,7 +148,7 @@ def write_hdf5(path, table):
         put("members/key", [member["keys"]["mpm"] for member in table.plan["members"]], "", "SHA-256 of the input of the runout")
         for p in table.parameters:
             numeric = p["numeric"]
-            values = np.array(table.values[p["name"]], float) if numeric else list(table.values[p["name"]])
+            values = np.array(table.values[p["name"]], float) if numeric else [text_of_choice(p, value) for value in table.values[p["name"]]]
             what = "multiplies " if p["scales"] else ""
             put(f"parameters/{p['name']}", values, "1" if p["scales"] else "as in the case file", what + ", ".join(p["keys"]))
         for headline in used_headlines(table):

@@ -17,6 +17,7 @@ import profile_of_flow as flow  # noqa: E402
 import sensitivity  # noqa: E402
 import style  # noqa: E402
 import sweep_figures as figures  # noqa: E402
+from headline import BY_NAME, of_strengths  # noqa: E402
 from sample import sample  # noqa: E402
 
 
@@ -49,10 +50,20 @@ linear = table("latin_hypercube", x, 3 * x[:, 0] - 2 * x[:, 1] + np.array([4.0 i
 effects, explained = sensitivity.regression(linear, "runout_m")
 assert abs(explained - 1) < 1e-12 and np.allclose([effects[0].low, effects[0].high], [-1.2, 1.2], atol=0.02), effects
 assert np.allclose([effects[2].low, effects[2].high], [-2, 2]) and abs(effects[1].share / effects[0].share - 4 / 9) < 0.02, effects
+assert (effects[2].low_at, effects[2].high_at) == ("a", "b")
+effects_of_words = effects[2]
+# A parameter that only half of the members have is at its mean in the others, and its ends are those of the half.
+half = table("latin_hypercube", x, 3 * x[:, 0] + np.where(x[:, 1] > 0.5, 2 * (x[:, 1] - 0.75), 0.0))
+half.values["x2"] = [value if value > 0.5 else None for value in half.values["x2"]]
+effects, explained = sensitivity.regression(half, "runout_m")
+assert abs(explained - 1) < 1e-4 and np.allclose([effects[1].low, effects[1].high], [-0.4, 0.4], atol=0.02), effects
 fixed = table("latin_hypercube", np.c_[x, np.full(200, 120.0)], x[:, 0])  # the third is the same in all members
 assert [effect.name for effect in sensitivity.regression(fixed, "runout_m")[0]] == ["x1", "x2"]
 assert "too few" in sensitivity.regression(table("sobol", x[:4], x[:4, 0]), "runout_m")[1]
 assert "the same in all" in sensitivity.regression(table("sobol", x, np.ones(200)), "runout_m")[1]
+
+summary = {"residual_strength": [{"particles": 3, "strength_Pa": {"mean": 2e3}}, {"particles": 1, "strength_Pa": {"mean": 6e3}}, {"particles": 0, "strength_Pa": None}]}
+assert of_strengths(summary) == {"mean_strength_Pa": 3e3} and of_strengths({}) == of_strengths(None) == {}
 
 low, high = figures.band([0, 10], 10, 0)
 assert np.allclose([low[0], high[0], low[1], high[1]], [0, 1 - 0.025**0.1, 0.025**0.1, 1]), (low, high)
@@ -75,4 +86,12 @@ with tempfile.TemporaryDirectory() as name:
     assert picture.stat().st_size > 10000
     figures.sensitivities(style.pyplot(), fixed, pathlib.Path(name) / "fixed.png")
     figures.scatter(style.pyplot(), fixed, pathlib.Path(name) / "scatter.png")
+    linear.parameters[-1].update(choices=[None, "b", "a"], labels=["as it is", "much", "little"], axis="how much")
+    assert figures.words_in_order(linear.parameters[-1], words) == ["much", "little"] and figures.base_choice(linear.parameters[-1]) is None
+    assert figures.effect_words(linear, effects_of_words) == "how much:\nlittle \u2192 much" and figures.axis_words(linear.parameters[0]) == "x1"
+    linear.plan["reference"] = {"name": "real", "numbers": {"runout_m": 9.0}}
+    assert figures.known_elsewhere(linear, BY_NAME["runout_m"]) == ("real", 9.0)
+    figures.exceedance(style.pyplot(), linear, pathlib.Path(name) / "exceedance.png")
+    for drawn in (linear, half):
+        figures.scatter(style.pyplot(), drawn, pathlib.Path(name) / "scatter.png")
 print("indices, regression, bands and volumes are what they are known to be")
