@@ -149,14 +149,15 @@ def sensitivities(plt, table, output):
 def profiles(plt, table, output):
     p = table.profiles
     have, failed = table.done & table.draws & ~np.isnan(p["depth"]).all(axis=1), failed_draws(table)
-    depth, surface, initial = p["depth"][have], p["surface"][have], p["initial_surface"][have]
+    depth, one_bed = p["depth"][have], p["one_bed"]
+    surface, initial = (p[name][have] for name in (("surface", "initial_surface") if one_bed else ("height", "initial_height")))
     some = np.flatnonzero((depth > 0.0).any(axis=0))
     some = some if len(some) else np.arange(len(p["x"]))
     margin = max(int(0.06 * (some[-1] - some[0])), 3)
     part = slice(max(some[0] - margin, 0), some[-1] + margin + 1)
     x = p["x"][part]
     figure, axes = plt.subplots(3, 1, figsize=(style.WIDTH, 9.5), sharex=True)
-    for axis, values, label in ((axes[0], surface, "ground at the end"), (axes[1], depth, "depth of what flowed")):
+    for axis, values, label in ((axes[0], surface, "ground at the end" if one_bed else "ground at the end over each member's own bed"), (axes[1], depth, "depth of what flowed")):
         known = ~np.isnan(values[:, part]).all(axis=0)
         low, middle, high = np.nanpercentile(values[:, part][:, known], [10, 50, 90], axis=0)
         axis.fill_between(x[known], low, high, color=BLUE, alpha=0.25, lw=0, label="P10 to P90")
@@ -164,8 +165,8 @@ def profiles(plt, table, output):
         axis.set_title(f"{label}, column by column over {have.sum()} members" + (" (heights exaggerated)" if axis is axes[0] else ""))
     known = ~np.isnan(initial[:, part]).all(axis=0)
     axes[0].plot(x[known], np.nanmedian(initial[:, part][:, known], axis=0), color="0.4", lw=1.0, ls="--", label="at the hand-over")
-    axes[0].plot(x, p["bed"][part], color="#8b6b4a", lw=1.2, label="bed")
-    axes[0].set_ylabel("y (m)")
+    axes[0].plot(x, p["bed"][part] if one_bed else 0.0 * x, color="#8b6b4a", lw=1.2, label="bed")
+    axes[0].set_ylabel("y (m)" if one_bed else "height (m)")
     axes[1].set_ylabel("depth (m)")
     axes[1].set_ylim(bottom=0.0)
     share = (depth[:, part] > WANTED).sum(axis=0)

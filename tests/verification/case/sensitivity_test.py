@@ -18,6 +18,7 @@ import sensitivity  # noqa: E402
 import style  # noqa: E402
 import sweep_figures as figures  # noqa: E402
 from headline import BY_NAME, of_strengths  # noqa: E402
+from members_table import profiles_of  # noqa: E402
 from sample import sample  # noqa: E402
 
 
@@ -79,6 +80,19 @@ run = flow.of_particles(first, last)
 assert np.isclose(run.released_volume, 40) and np.isclose(run.depth.sum() * run.width, 40) and run.width == 4.0
 assert np.isclose(run.depth[run.x == 22.0], 4.0) and np.allclose(run.bed, 0.0) and np.nanmax(run.surface) == 4.0
 assert np.isclose(run.depth[run.x == 18.0], 4 * 2.7 / 4), run.depth
+
+# Two members on valley floors of their own: heights are over each one's bed, and there is no bed of both where they part.
+with tempfile.TemporaryDirectory() as name:
+    folders = []
+    for member, fall in enumerate((0.0, 0.5)):
+        folders.append(pathlib.Path(name) / str(member))
+        folders[-1].mkdir()
+        rows = [f"{x},,{2 - fall * x if x < 6 + 4 * member else ''},{-fall * x},{2 if x < 6 + 4 * member else 0}" for x in (1, 3, 5, 7, 9)]
+        (folders[-1] / "profile.csv").write_text("\n".join(["x_m,initial_surface_m,surface_m,bed_m,flow_depth_m", *rows]) + "\n")
+    found = profiles_of(folders)
+    assert np.allclose(found["height"], [[2, 2, 2, 0, 0], [2, 2, 2, 2, 2]]) and not found["one_bed"]
+    assert np.array_equal(np.isnan(found["bed"]), [False, True, True, True, True]) and np.allclose(found["surface"][0], [2, 2, 2, 0, 0])
+    assert profiles_of(folders[:1])["one_bed"] and np.allclose(profiles_of(folders[:1])["surface"], [[2, 2, 2, 0, 0]])
 
 with tempfile.TemporaryDirectory() as name:
     picture = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else f"{name}/sensitivity.png")
