@@ -8,9 +8,13 @@
     "factor": { "key": "mpm:/residual_strength/factor", "distribution": "lognormal", "median": 1, "log_sd": 0.3, "low": 0.4, "high": 2 },
     "friction": { "keys": ["mpm:/terrain/0/friction"], "values": [0.3, 0.35, 0.4] },
     "strengths": { "key": "transfer:/rules/0/residual_strength/strengths", "distribution": "uniform", "low": 0.8, "high": 1.2, "scales": true },
-    "motion": { "key": "fem:/shake/motion", "folder": "motion", "pattern": "*.AT2" }
+    "motion": { "key": "fem:/shake/motion", "folder": "motion", "pattern": "*.AT2" },
+    "model": { "key": "mpm:/residual_strength/model", "values": [null, "weber", "kramer_wang"], "labels": ["bins", "Weber", "Kramer and Wang"] },
+    "percentile": { "key": "mpm:/residual_strength/percentile", "distribution": "uniform", "low": 5, "high": 95, "axis": "percentile (%)",
+                    "only_with": { "model": ["Weber", "Kramer and Wang"] } }      null, and so not set, with other choices
   },
   "correlations": [ { "between": ["factor", "strengths"], "rank": 0.5 } ]      Spearman's rank correlation
+  "reference": { "name": "1978", "numbers": { "runout_m": 800 } },      what pictures draw a line for (steps.py)
   "curves": { "over": "time", "axis": "time of the hand-over (s)", "chance": ["motion_scale"], "numbers": ["runout_m"] }      a grid's picture (curves.py)
 }
 docs/what_if.md says more.
@@ -45,6 +49,8 @@ class Parameter:
     choices: list = None
     scales: bool = False  # the value multiplies what the case file says
     labels: list = None  # what tables and pictures call the choices
+    axis: str = None  # what pictures call the parameter
+    only_with: dict = None  # {earlier list's name: its choices with which this one is varied}; with others it is null
 
     @property
     def numeric(self):
@@ -55,6 +61,9 @@ class Parameter:
             return self.distribution.values(u)
         count = len(self.choices)
         return [self.choices[min(int(part * count), count - 1)] for part in u]
+
+    def varied_in(self, member):
+        return all(member[name] in choices for name, choices in (self.only_with or {}).items())
 
     def base_value(self):
         return 1.0 if self.scales else self.base
@@ -69,7 +78,7 @@ class Design:
     parameters: list
     members: list  # {parameter: value}, in order
     steps: list = field(default_factory=list)  # steps.Step; the parameter "step" is the name of one
-    reference: dict = None  # what the steps lead to
+    reference: dict = None  # numbers that are known of elsewhere
     curves: dict = None  # over which parameter numbers are drawn (curves.py)
 
 
@@ -118,7 +127,28 @@ def scalable(value):
     return bool(numbers) and all(isinstance(v, (int, float)) and not isinstance(v, bool) for v in numbers)
 
 
-def read_parameter(keys, name, case_dir, contents):
+def read_only_with(keys, earlier):
+    """{name: [choices]} of a parameter that has a meaning only with some choices of lists before it, None without."""
+    if not keys.has("only_with"):
+        return None
+    own = Keys(keys.file, f"{keys.pointer}/only_with", keys.content["only_with"])
+    lists = {parameter.name: parameter for parameter in earlier if parameter.choices is not None}
+    found = {}
+    for name in own.content:
+        if name not in lists:
+            raise DesignError(f"{own.at(name)}: there is no list '{name}' before this parameter.{near(name, lists)} There are {', '.join(lists) or 'none'}")
+        asked, choices, labels = own.value(name), lists[name].choices, lists[name].labels or []
+        if not isinstance(asked, list) or not asked:
+            own.refuse(name, asked, f"a list of choices of '{name}'")
+        for word in asked:
+            if word not in choices and word not in labels:
+                raise DesignError(f"{own.at(name)}: '{name}' has no choice {keys.word(word)}.{near(word, labels or choices)} "
+                                  f"There are {', '.join(labels or map(keys.word, choices))}")
+        found[name] = [choices[labels.index(word)] if word in labels else word for word in asked]
+    return found
+
+
+def read_parameter(keys, name, case_dir, contents, earlier=()):
     if keys.has("keys") == keys.has("key"):
         raise DesignError(f"{keys.file}: {keys.pointer}: one of 'key' and 'keys' is needed")
     where = "keys" if keys.has("keys") else "key"
@@ -145,6 +175,8 @@ def read_parameter(keys, name, case_dir, contents):
     if parameter.labels is not None and not (isinstance(parameter.labels, list) and all(isinstance(label, str) for label in parameter.labels)
                                              and len(set(parameter.labels)) == len(parameter.labels) == len(parameter.choices or [])):
         keys.refuse("labels", parameter.labels, "a list with a text of its own for each of the values")
+    parameter.axis = keys.text("axis")
+    parameter.only_with = read_only_with(keys, earlier)
     parameter.scales = keys.value("scales", False)
     if not isinstance(parameter.scales, bool):
         keys.refuse("scales", parameter.scales, "true or false")
@@ -198,13 +230,25 @@ def batches_of(keys, kind):
     return batches
 
 
+def conditional(values, parameters):
+    """A member of these values: null where a parameter is only varied with other choices than the member's."""
+    member = {}
+    for parameter, value in zip(parameters, values):
+        member[parameter.name] = value if parameter.varied_in(member) else None
+    return member
+
+
+def without_repeats(members):
+    return list({json.dumps(member, sort_keys=True): member for member in members}.values())
+
+
 def members_of(kind, batches, seed, parameters, correlations, keys):
     if kind in ("grid", "steps"):
         for parameter in parameters:
             if parameter.choices is None:
                 raise DesignError(f"{keys.file}: /parameters/{parameter.name}: the design '{kind}' is made of lists ('values' or 'folder'), not of distributions")
         combinations = itertools.product(*(parameter.choices for parameter in parameters))
-        return [{parameter.name: value for parameter, value in zip(parameters, values)} for values in combinations]
+        return without_repeats([conditional(values, parameters) for values in combinations])
     if kind == "saltelli" and not np.array_equal(correlations, np.eye(len(parameters))):
         raise DesignError(f"{keys.at('correlations')}: Sobol' indices are for independent parameters; take the correlations out, or the design "
                           "'latin_hypercube'")
@@ -213,7 +257,7 @@ def members_of(kind, batches, seed, parameters, correlations, keys):
     except np.linalg.LinAlgError:
         raise DesignError(f"{keys.at('correlations')}: these correlations contradict each other (their matrix is not positive definite)") from None
     columns = [parameter.values(u[:, k]) for k, parameter in enumerate(parameters)]
-    return [{parameter.name: column[row] for parameter, column in zip(parameters, columns)} for row in range(len(u))]
+    return [conditional([column[row] for column in columns], parameters) for row in range(len(u))]
 
 
 def read_design(path, case_dir):
@@ -235,7 +279,7 @@ def design_of(content, path, case_dir, contents):
     keys = Keys(path, "", content)
     kind = keys.choice("design", DESIGNS, "latin_hypercube")
     title, seed = keys.text("title", ""), keys.count("seed", 1, 0)
-    steps, reference = (read_steps(keys, contents), read_reference(keys)) if kind == "steps" else ([], None)
+    steps, reference = read_steps(keys, contents) if kind == "steps" else [], read_reference(keys)
     given = keys.value("parameters", {} if steps else None, required=not steps)
     if not isinstance(given, dict) or not (given or steps):
         keys.refuse("parameters", given, "an object with a parameter at least")
@@ -245,7 +289,7 @@ def design_of(content, path, case_dir, contents):
             raise DesignError(f"{path}: /parameters: '{name}' is the name of the steps themselves; choose another")
         if not name.replace("_", "").isalnum() or not name.isascii():
             raise DesignError(f"{path}: /parameters: '{name}' cannot be a parameter's name: letters, digits and _ are allowed")
-        parameters.append(read_parameter(Keys(path, f"/parameters/{name}", entry), name, case_dir, contents))
+        parameters.append(read_parameter(Keys(path, f"/parameters/{name}", entry), name, case_dir, contents, parameters))
     words = [word for parameter in parameters for word in parameter.keys]
     for word in words:
         if words.count(word) > 1:

@@ -38,13 +38,14 @@ class Headline:
 
 
 MEASURE = 2  # to be raised when a number or the profile is measured in another way: members of sweeps are then computed anew
-FEM, MPM, FLOW, HANDOVER = "fem/summary.json", "mpm/summary.json", "flow", "fem/quality.csv"
+FEM, MPM, FLOW, HANDOVER, STRENGTH = "fem/summary.json", "mpm/summary.json", "flow", "fem/quality.csv", "strength"
 HEADLINES = (
     Headline("runout_m", "runout", "m", ((MPM, "runout_m"),)),
     Headline("runout_of_body_m", "runout of the flow's body", "m", ((MPM, "runout_of_body_m"),)),
     Headline("coherent_runout_m", "runout without gaps", "m", ((MPM, "coherent_runout_m"),)),
     Headline("flow_front_m", "front of what flowed, x", "m", ((MPM, "flow_front_position_m"),)),
     Headline("released_volume_m3", "released volume", "m3", ((MPM, "flowed_volume_m3"), (FLOW, "released_volume_m3")), digits=0),
+    Headline("mean_strength_Pa", "mean strength of liquefied soil", "Pa", ((STRENGTH, "mean_strength_Pa"),), "kPa", 1e-3, 2),
     Headline("flowed_mass_kg", "mass that flowed", "kg", ((MPM, "flowed_mass_kg"),), "t", 1e-3, 0),
     Headline("moved_mass_kg", "mass moved since before the motion", "kg", ((FLOW, "moved_mass_kg"),), "t", 1e-3, 0),
     Headline("freeboard_lost_m", "freeboard lost", "m", ((MPM, "freeboard_lost_m"),), digits=2),
@@ -55,6 +56,7 @@ HEADLINES = (
     Headline("largest_displacement_fem_m", "largest displacement, shaking", "m", ((FEM, "largest_displacement_m"),), digits=2),
     Headline("displacement_at_handover_m", "largest displacement at the hand-over", "m", ((HANDOVER, "largest_displacement_m"),), digits=2),
     Headline("liquefied_depth_m", "liquefied depth", "m", ((FEM, "liquefied_depth_m"),)),
+    Headline("liquefied_depth_at_handover_m", "liquefied depth at the hand-over", "m", ((HANDOVER, "liquefied_depth_m"),)),
     Headline("mean_pore_pressure_ratio", "mean r_u of the tailings", "1", ((FEM, "mean_excess_pore_pressure_ratio"),), digits=3),
 )
 BY_NAME = {headline.name: headline for headline in HEADLINES}
@@ -85,6 +87,13 @@ def of_flow(measured):
     return {"released_volume_m3": measured.released_volume, "moved_mass_kg": measured.moved_mass} if measured else {}
 
 
+def of_strengths(summary):
+    """The mean over the particles of liquefied soil, factors included and before any softening, of a runout's summary, as numbers() reads it."""
+    used = [entry for entry in (summary or {}).get("residual_strength", []) if entry["particles"]]
+    count = sum(entry["particles"] for entry in used)
+    return {"mean_strength_Pa": sum(entry["particles"] * entry["strength_Pa"]["mean"] for entry in used) / count} if count else {}
+
+
 def at_handover(quality, time):
     """What the shaking's series (fem/quality.csv) says of the time of the hand-over (s), as numbers() reads it; empty without one, or where the
     shaking ended before."""
@@ -98,6 +107,7 @@ def of_run(root, fem=None):
     """Headline numbers of a run's folder (`fem`: where fem/ lies, if elsewhere), and its Flow (None without frames)."""
     root = Path(root)
     measured = flow.of_frames(root / "mpm")
-    contents = {MPM: read_json(root / MPM), FEM: read_json(Path(fem or root) / FEM), FLOW: of_flow(measured),
+    summary = read_json(root / MPM)
+    contents = {MPM: summary, STRENGTH: of_strengths(summary), FEM: read_json(Path(fem or root) / FEM), FLOW: of_flow(measured),
                 HANDOVER: at_handover(Path(fem or root) / HANDOVER, measured.since if measured else None)}
     return numbers(contents), measured

@@ -15,6 +15,7 @@ from headline import HEADLINES
 from stage import read_json
 
 WANTED = 0.3  # m: flow deeper than this is asked about along the flow
+ONE_BED = 1.0  # m: members whose beds differ by more flow over ground of their own
 
 
 @dataclass
@@ -24,7 +25,7 @@ class Table:
     content: list  # member.json or failed.json of each member
     values: dict  # parameter -> list
     numbers: dict  # headline name -> array, NaN where a member has none
-    profiles: dict  # x, surface, initial_surface, bed, depth; empty without profiles
+    profiles: dict  # x, surface, initial_surface, bed, depth, height, initial_height, one_bed; empty without profiles
 
     @property
     def done(self):
@@ -54,7 +55,8 @@ def on_columns(table, x):
 
 def profiles_of(folders):
     """Profiles of members over one x (m), the columns of the widest: arrays (members, columns). Where a member has no soil its surface
-    is the bed (NaN without one) and its depth 0; members without a profile are NaN throughout."""
+    is the bed (NaN without one), its depth and its height over the bed 0; members without a profile are NaN throughout. Where beds of
+    members differ there is no bed of all: NaN, and a member's own where it is known."""
     tables = [series(folder / "profile.csv") if folder else None for folder in folders]
     given = [table for table in tables if table is not None]
     if not given:
@@ -64,13 +66,21 @@ def profiles_of(folders):
     high = max(int(np.round(max(table["x_m"].max() for table in given) / width - 0.5)), low + 1)
     x = (np.arange(low, high + 1) + 0.5) * width
     columns = [None if table is None else on_columns(table, x) for table in tables]
-    bed = np.full(len(x), np.nan)
+    bed, lowest = np.full(len(x), np.nan), np.full(len(x), np.nan)
     for own in columns:
         if own is not None:
-            bed = np.fmax(bed, own["bed_m"])
-    found = {"x": x, "bed": bed}
-    for name, column, without in (("surface", "surface_m", bed), ("initial_surface", "initial_surface_m", bed), ("depth", "flow_depth_m", np.zeros(len(x)))):
-        found[name] = np.array([np.full(len(x), np.nan) if own is None else np.where(np.isnan(own[column]), without, own[column]) for own in columns])
+            bed, lowest = np.fmax(bed, own["bed_m"]), np.fmin(lowest, own["bed_m"])
+    parted = bed - lowest > ONE_BED
+    bed = np.where(parted, np.nan, bed)
+    found = {"x": x, "bed": bed, "one_bed": not np.any(parted)}
+    for name, column in (("height", "surface_m"), ("initial_height", "initial_surface_m")):
+        found[name] = np.array([np.full(len(x), np.nan) if own is None else np.where(np.isnan(own[column]), 0.0, own[column] - own["bed_m"]) for own in columns])
+    for own in columns:
+        if own is not None:
+            own["bed_m"] = np.where(np.isnan(own["bed_m"]), bed, own["bed_m"])
+    for name, column in (("surface", "surface_m"), ("initial_surface", "initial_surface_m"), ("depth", "flow_depth_m")):
+        found[name] = np.array([np.full(len(x), np.nan) if own is None else
+                                np.where(np.isnan(own[column]), 0.0 if name == "depth" else own["bed_m"], own[column]) for own in columns])
     return found
 
 
@@ -99,6 +109,11 @@ def text_of(value):
     return value if isinstance(value, str) else json.dumps(value)
 
 
+def text_of_choice(p, value):
+    """What tables and pictures call a parameter's value."""
+    return p["labels"][p["choices"].index(value)] if p.get("labels") and value in p["choices"] else text_of(value)
+
+
 def used_headlines(table):
     return [headline for headline in HEADLINES if np.isfinite(table.numbers[headline.name]).any()]
 
@@ -110,7 +125,7 @@ def write_csv(path, table):
         writer.writerow(["member", "state", "key", *table.values, *(headline.name for headline in headlines), "stop_reason"])
         for row, member in enumerate(table.plan["members"]):
             numbers = [table.numbers[headline.name][row] for headline in headlines]
-            writer.writerow([member["number"], table.state[row], member["keys"]["mpm"][:plan.KEY_LENGTH], *(text_of(v[row]) for v in table.values.values()),
+            writer.writerow([member["number"], table.state[row], member["keys"]["mpm"][:plan.KEY_LENGTH], *(text_of_choice(p, table.values[p["name"]][row]) for p in table.parameters),
                              *("" if np.isnan(number) else f"{number:.12g}" for number in numbers), table.content[row].get("stop_reason", "")])
 
 
@@ -143,14 +158,14 @@ def write_hdf5(path, table):
         put("members/key", [member["keys"]["mpm"] for member in table.plan["members"]], "", "SHA-256 of the input of the runout")
         for p in table.parameters:
             numeric = p["numeric"]
-            values = np.array(table.values[p["name"]], float) if numeric else list(table.values[p["name"]])
+            values = np.array(table.values[p["name"]], float) if numeric else [text_of_choice(p, value) for value in table.values[p["name"]]]
             what = "multiplies " if p["scales"] else ""
             put(f"parameters/{p['name']}", values, "1" if p["scales"] else "as in the case file", what + ", ".join(p["keys"]))
         for headline in used_headlines(table):
             put(f"numbers/{headline.name}", table.numbers[headline.name], headline.unit, headline.label)
         if table.profiles:
             put("profiles/x", table.profiles["x"], "m", "middle of the columns of soil")
-            put("profiles/bed", table.profiles["bed"], "m", "ground that soil flows over")
+            put("profiles/bed", table.profiles["bed"], "m", f"ground that soil flows over, NaN where members differ by more than {ONE_BED:g} m")
             for name, words in (("initial_surface", "highest soil at the hand-over"), ("surface", "highest soil at the end, the bed without"),
                                 ("depth", "volume of what flowed over the column's width")):
                 put(f"profiles/{name}", table.profiles[name], "m", words + "; (members, columns)")

@@ -2,7 +2,8 @@
 
 Regression: y = b0 + sum b_i x_i by least squares, lists of words by one constant for each word. `Effect.low` and `high` are the
 changes of y from the mean as one parameter goes to its 10th and 90th percentile (for words: the lowest and the highest mean) and the
-others stay; `share` is b_i^2 var(x_i) / var(y), the first-order index if the model were linear and the parameters independent.
+others stay, `low_at` and `high_at` say which word is where; `share` is b_i^2 var(x_i) / var(y), the first-order index if the model were linear and the parameters independent. A parameter that is only varied with some choices of another (`only_with`) is at its mean in
+the members without it.
 """
 
 from dataclasses import dataclass
@@ -16,6 +17,8 @@ class Effect:
     low: float
     high: float
     share: float
+    low_at: object = None  # words: the values of the lowest and the highest mean
+    high_at: object = None
 
 
 @dataclass
@@ -38,18 +41,25 @@ def columns_of(table, chosen):
     for p in varied(table):
         values = [value for value, use in zip(table.values[p["name"]], chosen) if use]
         if p["numeric"]:
-            found.append((p["name"], True, np.array(values, float)[:, None]))
+            found.append((p["name"], True, np.array(values, float)[:, None]))  # null becomes NaN
         else:
             words = sorted({repr(value) for value in values})
             found.append((p["name"], False, np.array([[float(repr(value) == word) for word in words[1:]] for value in values]).reshape(len(values), -1)))
     return found
 
 
+def at_mean(column):
+    """NaN, where a parameter is not varied, replaced by the mean of the others."""
+    known = np.isfinite(column)
+    return np.where(known, column, column[known].mean() if known.any() else 0.0)
+
+
 def regression(table, name):
     """([Effect], R2), or (None, reason) where the members are too few or all alike."""
     chosen = np.isfinite(table.numbers[name])
     y = table.numbers[name][chosen]
-    columns = columns_of(table, chosen)
+    columns = [(name, numeric, at_mean(part) if numeric else part) for name, numeric, part in columns_of(table, chosen)]
+    given = {p["name"]: [value for value, use in zip(table.values[p["name"]], chosen) if use] for p in table.parameters}
     terms = 1 + sum(part.shape[1] for _, _, part in columns)
     if len(y) < terms + 3:
         return None, f"{len(y)} members are too few for a regression with {terms} terms"
@@ -64,11 +74,14 @@ def regression(table, name):
         own = b[at:at + part.shape[1]]
         at += part.shape[1]
         change = part @ own - (part @ own).mean() if part.shape[1] else np.zeros(len(y))
+        share = float(np.var(change) / np.var(y))
         if numeric:
-            low, high = (own[0] * (np.percentile(part[:, 0], p) - part[:, 0].mean()) for p in (10, 90))
+            known = np.array([value for value in given[parameter] if value is not None], float)
+            low, high = (own[0] * (np.percentile(known, p) - known.mean()) for p in (10, 90)) if len(known) else (0.0, 0.0)
+            effects.append(Effect(parameter, low, high, share))
         else:
-            low, high = change.min(), change.max()
-        effects.append(Effect(parameter, low, high, float(np.var(change) / np.var(y))))
+            least, most = int(change.argmin()), int(change.argmax())
+            effects.append(Effect(parameter, change[least], change[most], share, given[parameter][least], given[parameter][most]))
     return effects, float(explained)
 
 

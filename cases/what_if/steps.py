@@ -4,7 +4,7 @@
   { "name": "the main case" },
   { "name": "PM4Sand for the embankment too", "set": { "fem:/materials/embankment": { "model": "pm4sand", ... } } }, ...
 ],
-"reference": { "name": "the paper", "numbers": { "largest_displacement_mpm_m": 10 } }      what the way leads to, for the picture
+"reference": { "name": "the paper", "numbers": { "largest_displacement_mpm_m": 10 } }      what the way leads to, for the picture (of other designs: exceedance)
 
 Parameters with lists make members of each step (the same runs with other motions, say): without them nobody knows what of a difference is chance.
 """

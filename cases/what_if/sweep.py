@@ -110,7 +110,7 @@ def write_plan(folder, design, members, arguments):
         "batches": design.batches, "seed": design.seed, "store": str(arguments.fem / "store"), "reference": design.reference,
         "curves": design.curves, "input": input_of(chain_of(arguments), members),
         "parameters": [{"name": p.name, "keys": p.keys, "base": p.base_value(), "scales": p.scales, "numeric": p.numeric, "choices": p.choices,
-                        "labels": p.labels} for p in design.parameters],
+                        "labels": p.labels, "axis": p.axis} for p in design.parameters],
         "members": [{"number": m.number, "values": m.values, "settings": m.settings, "keys": m.keys} for m in members]})
 
 

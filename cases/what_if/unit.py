@@ -76,7 +76,8 @@ def folder_of_unit(root):
 
 def write_member(chain, root, work, store, donors):
     """Keeps a member's numbers, front and profile; the rest goes."""
-    contents = {headline.MPM: read_json(work / headline.MPM)}
+    summary = read_json(work / headline.MPM) or {}
+    contents = {headline.MPM: summary, headline.STRENGTH: headline.of_strengths(summary)}
     if chain.has("shake"):
         key = chain.record("shake")["key"]
         shaken = (folder for folder in (work, plan.folder_of(store, "shake", key), *donors) if results_of(folder, "shake", key))
@@ -91,7 +92,6 @@ def write_member(chain, root, work, store, donors):
         contents[headline.FLOW] = headline.of_flow(flow)
     if (work / "mpm" / "front.csv").exists():
         shutil.copyfile(work / "mpm" / "front.csv", root / "front.csv")
-    summary = contents[headline.MPM] or {}
     write_json(root / "member.json", {
         "key": chain.record("mpm")["key"], "measure": headline.MEASURE, "settings": stages.what_if.words(chain.settings), "numbers": headline.numbers(contents),
         "stop_reason": summary.get("stop_reason", ""), "particles": summary.get("particles"), "warnings": summary.get("warnings", []),

@@ -88,7 +88,11 @@ with tempfile.TemporaryDirectory() as name:
             ([P, "motion"], {"key": "fem:/shake/motion", "folder": "nowhere"}, "there is no folder"),
             ([P, "motion"], {"key": "fem:/shake/motion", "folder": ".", "pattern": "*.AT2"}, "no file of"),
             ([P, "cap"], {"key": "mpm:/damping/local", "values": [1.0], "scales": True}, "mpm:/damping/local is \"nothing\" in the case file"),
-            ([P, "cap", "key"], "mpm:/terrain/7/friction", "there is no '7' at '/terrain'")):
+            ([P, "cap", "key"], "mpm:/terrain/7/friction", "there is no '7' at '/terrain'"), ([P, "cap", "axis"], 3, "a text is needed"),
+            ([P, "cap", "only_with"], {"factor": [1]}, "there is no list 'factor' before this parameter"),
+            ([P, "model"], {"key": "mpm:/a", "values": [1, 2], "only_with": {"cap": [None]}}, "'cap' has no choice null. There are true, false"),
+            ([P, "model"], {"key": "mpm:/a", "values": [1, 2], "only_with": {"cap": True}}, "a list of choices of 'cap' is needed"),
+            (["reference"], {"name": "real", "numbers": {"runot_m": 800}}, "Did you mean 'runout_m'?")):
         try:
             read(changed(way, value))
         except design.DesignError as error:
@@ -99,6 +103,17 @@ with tempfile.TemporaryDirectory() as name:
     lacking = read({"design": "grid", "parameters": {"damping": {"key": "mpm:/damping/local", "values": [0.0, 0.05]}}})
     assert lacking.parameters[0].base is None and design.settings_of(lacking, lacking.members[1], contents) == {"mpm": ["/damping/local=0.05"]}
     assert design.what_if.case_with(case / "mpm.json", ["/damping/local=0.05"])["damping"] == {"local": 0.05}
+    # A percentile belongs to the models that have one: elsewhere it is not set, and a grid has no member twice.
+    models = {"model": {"key": "mpm:/residual_strength/model", "values": [None, "weber", "ratio"], "labels": ["as given", "Weber", "of stress"]},
+              "percentile": {"key": "mpm:/residual_strength/percentile", "values": [16, 50], "axis": "percentile (%)", "only_with": {"model": ["Weber"]}},
+              "cap": {"key": "mpm:/residual_strength/drained_cap", "values": [True], "only_with": {"percentile": [16], "model": ["weber"]}}}
+    grid = read({"design": "grid", "parameters": models})
+    assert [tuple(member.values()) for member in grid.members] == [(None, None, None), ("weber", 16, True), ("weber", 50, None), ("ratio", None, None)]
+    assert design.settings_of(grid, grid.members[0], contents) == {} and "/residual_strength/percentile=16" in design.settings_of(grid, grid.members[1], contents)["mpm"]
+    models["percentile"] = {**models["percentile"], "distribution": "uniform", "low": 10, "high": 90}
+    del models["percentile"]["values"], models["cap"]
+    drawn = read({"design": "sobol", "members": 16, "parameters": models, "reference": {"name": "real", "numbers": {"runout_m": 800}}})
+    assert all((member["percentile"] is None) == (member["model"] != "weber") for member in drawn.members) and drawn.reference["numbers"] == {"runout_m": 800}
     folder = read({"design": "grid", "parameters": {"motion": {"key": "fem:/shake/motion", "folder": ".", "pattern": "*.csv"}}})
     assert folder.members == [{"motion": "motion.csv"}], folder.members
 print("sweep files mean what they say")
