@@ -9,8 +9,9 @@
 namespace tailrun::mpm {
 
 using Vec4 = double __attribute__((vector_size(32)));
-// The same anywhere in an array of doubles.
-using LooseVec4 = double __attribute__((vector_size(32), aligned(8), may_alias));
+// The same anywhere in an array of doubles. The attributes stand with the name: after the type Clang ignores `aligned`.
+using LooseVec4 __attribute__((vector_size(32), aligned(8), may_alias)) = double;
+static_assert(alignof(LooseVec4) == alignof(double));
 // What comparing four lanes gives: all bits set where it holds.
 using Mask4 = long long __attribute__((vector_size(32)));
 using Vec2 = double __attribute__((vector_size(16)));

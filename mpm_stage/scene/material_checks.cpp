@@ -96,17 +96,16 @@ void check_materials(const CaseNode& root, const Scene& scene) {
   setting.height = std::max(high - low, scene.cell_size);
   setting.has_water = wettest > 0.0;
   for (const auto& [name, node] : root.object("materials").members()) {
-    setting.flows_by_rate = std::any_of(scene.materials.begin(), scene.materials.end(), [&name](const Material& m) {
-      return m.name == name && m.rate.consistency > 0.0;
-    });
+    const auto material = std::find_if(scene.materials.begin(), scene.materials.end(),
+                                       [&name = name](const Material& m) { return m.name == name; });
+    const bool in_scene = material != scene.materials.end();
+    setting.flows_by_rate = in_scene && material->rate.consistency > 0.0;
     check_material(node, setting);
     check_grains(node, setting);
     check_fluid(node, setting);
     if (const auto stiffness = node.peek("pore_stiffness"))
       check_water_stiffness(node, "pore_stiffness", *stiffness, setting.gravity);
-    const auto material = std::find_if(scene.materials.begin(), scene.materials.end(),
-                                       [&name = name](const Material& m) { return m.name == name; });
-    if (material == scene.materials.end()) continue;
+    if (!in_scene) continue;
     check_softening(node, *material, scene.cell_size);
     if (setting.gravity > 0.0) check_table(node, *material);
   }
