@@ -159,6 +159,8 @@ class ContactSurface {
   double share_beside(const BodyShape<Dim>& body, const BodyShape<Dim>& other, const HalfSpaces<Shape>& half,
                       double h) const {
     using Line = InterfaceNode::Line;
+    // A corner that the plane hardly leaves has few bins, half of one is much of it: no more than `least` makes whole
+    // (JUDGE).
     constexpr double reach = Line::reach, least = 0.2;
     int across = 0;
     double cell = 1.0, share = 1.0;

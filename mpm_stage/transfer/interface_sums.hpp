@@ -3,9 +3,9 @@
 //
 // For the material of one field, with V_p the particles' volumes and w their weights at node i:
 //   V = sum V_p w,   V c = sum V_p w (x_p - x_i),   G = sum V_p grad w,   V s = sum V_p w s_p.
-// Beside that, what the particles cover along each axis (covered_bins.hpp).
 // G is the surface of the field's material times its outward normal, as the node sees it: inside the sums vanish, and
-// over all nodes they add up to the whole surface.
+// over all nodes they add up to the whole surface. Beside the sums, what the particles cover of the node's reach along
+// each axis (covered_bins.hpp).
 #pragma once
 
 #include <array>

@@ -93,6 +93,34 @@ TEST_CASE("contact between two fields keeps momentum and takes energy, whatever 
   }
 }
 
+TEST_CASE(
+    "of a bed askew to the grid all counts that a half-space lies on, also at nodes that see but a corner of it") {
+  using Line = InterfaceNode::Line;
+  for (const double share : {0.5, 0.8, 0.95}) {
+    CAPTURE(share);
+    const double slope = std::sqrt(0.5), offset = half.offset(share), surface = h * half.slice(share);
+    BodyShape<2> bed, soil;
+    bed.firm = true;
+    bed.volume = share * h * h;
+    soil.volume = (1.0 - share) * h * h;
+    bed.surface = bed.outward = {slope * surface, slope * surface};
+    soil.surface = {-slope * surface, -slope * surface};
+    bed.faces = surface;
+    bed.strength = no_soil_limit;
+    soil.strength = 5e3;
+    soil.centre = {slope * h, slope * h};
+    bed.centre = {-0.1 * h, -0.1 * h};
+    // The soil's bins: those that it reaches somewhere between the node's upper and lower end.
+    const double from = offset / slope - Line::reach;
+    const auto bins = static_cast<std::uint32_t>(
+        Line::below(24) & ~Line::below(static_cast<int>(std::max(0.0, std::round((from + Line::reach) * 8.0)))));
+    soil.cover = {bins, bins, 0};
+    CHECK(ContactSurface<2>(bed, soil, h, half).area() / surface == doctest::Approx(1.0).epsilon(0.05));
+    soil.cover = {};
+    CHECK(ContactSurface<2>(bed, soil, h, half).area() == 0.0);
+  }
+}
+
 TEST_CASE("phi = 0 soil brakes by its strength times the surface, and not at all across a gap") {
   const double strength = 5e3, area = h * half.slice(0.5);
   auto weak = side(-1.0, 1e3, {0.0, 1.0}, strength), strong = side(1.0, 1e9, {0.0, 0.0}, no_soil_limit);

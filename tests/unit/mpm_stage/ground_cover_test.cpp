@@ -63,6 +63,15 @@ TEST_CASE("what is more than a cell above the ground covers nothing") {
   CHECK(CoveredGround<2, 1>(X, node, 0.5, 1.2, {0.0, 1.0}).from(0, 0, 0).along[0] == 0);
 }
 
+TEST_CASE("what soil on a slope covers is its foot, straight below it against the slope") {
+  const double c = std::cos(0.4), s = std::sin(0.4), X[2] = {5.0, 5.0};
+  const int node[2] = {5, 5};
+  const auto seen = CoveredGround<2, 1>(X, node, 0.5, 0.8, {s, c}).from(0, 0, 0);
+  GroundCover<2>::Bits wanted;
+  GroundCover<2>::Line::under<1>(-0.8 * s, 0.25 * c, &wanted);
+  CHECK(seen.along[0] == wanted);
+}
+
 TEST_CASE("on a slope soil covers what lies across from it") {
   Terrain ground;
   const double c = std::cos(0.4), s = std::sin(0.4);
