@@ -33,7 +33,8 @@ void compare() {
           if (x < 0 && y < 0 && (Dim == 2 || z < 0)) continue;
           wanted += weight[i + 2] * weight[j + 2] * (Dim == 3 ? weight[k + 2] : 1.0) * field(x, y, z);
         }
-    CHECK(sum[n][0] == doctest::Approx(wanted).epsilon(1e-12).scale(1.0));
+    const double summed = sum[n][0];  // no reference binds to a lane of a vector
+    CHECK(summed == doctest::Approx(wanted).epsilon(1e-12).scale(1.0));
   }
 }
 
