@@ -160,8 +160,8 @@ TEST_CASE("what is sparse is so by volume and by spread; a patch filled evenly b
 }
 
 TEST_CASE("with linear functions and GIMP, too, a lone particle bears the longest step and not a tenth more") {
-  for (const auto& [shape, longest] : {std::pair{ShapeName::linear, longest_courant<LinearShape>(2)},
-                                       std::pair{ShapeName::gimp, longest_courant<GimpShape>(2)}}) {
+  for (const ShapeName shape : {ShapeName::linear, ShapeName::gimp}) {
+    const double longest = shape == ShapeName::linear ? longest_courant<LinearShape>(2) : longest_courant<GimpShape>(2);
     CAPTURE(static_cast<int>(shape));
     double within = 0.0, beyond = 0.0;
     for (double place = 0.0; place < 1.0; place += 0.03125) {

@@ -121,7 +121,8 @@ TEST_CASE("material list: each law reads its own keys and nothing else") {
     const std::string message = message_of(more);
     CHECK(message.find("unknown key 'strenght'") != std::string::npos);
     // What the least entry holds is all required.
-    for (const auto& [key, value] : least.items()) {
+    for (const auto& entry : least.items()) {
+      const std::string& key = entry.key();
       Json less = least;
       less.erase(key);
       CHECK_MESSAGE(message_of(less).find("/" + key + ": missing") != std::string::npos, key);

@@ -100,14 +100,14 @@ TEST_CASE("linear functions and GIMP take steps that a particle at a body's side
     const char *shape, *courant;
     double taken;
   };
-  for (const auto& [shape, courant, taken] :
+  for (const Wanted& wanted :
        {Wanted{"gimp", "0.8", 0.463}, {"linear", "0.8", 0.424}, {"gimp", "0.3", 0.3}, {"quadratic", "0.8", 0.8}}) {
-    CAPTURE(shape);
+    CAPTURE(wanted.shape);
     forget_warnings();
-    const Scene scene = scene_of({.time = fmt::format(R"(, "courant": {})", courant),
-                                  .scheme = fmt::format(R"("shape_function": "{}")", shape)});
-    CHECK(scene.solver.courant == doctest::Approx(taken).epsilon(2e-3));
-    CHECK(warnings().empty() == (taken == std::stod(courant)));
+    const Scene scene = scene_of({.time = fmt::format(R"(, "courant": {})", wanted.courant),
+                                  .scheme = fmt::format(R"("shape_function": "{}")", wanted.shape)});
+    CHECK(scene.solver.courant == doctest::Approx(wanted.taken).epsilon(2e-3));
+    CHECK(warnings().empty() == (wanted.taken == std::stod(wanted.courant)));
   }
   forget_warnings();
   CHECK(scene_of({.scheme = R"("shape_function": "gimp")"}).solver.courant == doctest::Approx(0.463).epsilon(2e-3));
