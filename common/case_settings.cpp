@@ -95,11 +95,7 @@ Json& member_of(Json& object, std::size_t depth, const std::string& place, const
 
 CaseSetting parse_setting(const std::string& text) {
   const auto fail = [&](const std::string& message) { throw InputError(fmt::format("--set {}: {}", text, message)); };
-  try {
-    text_of_json(Json(text));
-  } catch (const nlohmann::json::type_error&) {
-    throw InputError("--set: a character that is not UTF-8");
-  }
+  if (!is_utf8(text)) throw InputError("--set: a character that is not UTF-8");
   const std::size_t equals = text.find('=');
   if (text.empty() || text.front() != '/' || equals == std::string::npos)
     fail("a setting is /pointer=value, for instance /time/end=20 or /materials/tailings/friction_angle=30");

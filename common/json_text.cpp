@@ -149,7 +149,16 @@ nlohmann::ordered_json json_or_null(const std::string& text) {
 }
 
 std::string text_of_json(const nlohmann::ordered_json& json, int indent) {
-  return json.dump(indent);
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+bool is_utf8(const std::string& text) {
+  try {
+    Json(text).dump();
+  } catch (const nlohmann::json::type_error&) {
+    return false;
+  }
+  return true;
 }
 
 }  // namespace tailrun

@@ -14,7 +14,10 @@ nlohmann::ordered_json parse_json(const std::filesystem::path& path, const std::
 // What one of the programs has written into a file's attribute; null when it is not JSON.
 nlohmann::ordered_json json_or_null(const std::string& text);
 
-// The library's dump(), compiled once: `indent` spaces a level, on one line without.
+// The library's dump(), compiled once: `indent` spaces a level, on one line without. Bytes that are not UTF-8, as file
+// names may hold, become U+FFFD: no result is lost for a name.
 std::string text_of_json(const nlohmann::ordered_json& json, int indent = -1);
+
+bool is_utf8(const std::string& text);
 
 }  // namespace tailrun

@@ -17,7 +17,7 @@ bool is_control(unsigned char c) {
 std::string fault_of_all(const std::string& name) {
   if (name.empty()) return "is empty";
   if (std::any_of(name.begin(), name.end(), is_control)) return "has a line break or another control character";
-  return "";
+  return is_utf8(name) ? "" : "has a character that is not UTF-8";
 }
 
 void require_none(const CaseNode& node, const std::string& key, const std::string& name, const std::string& fault,
